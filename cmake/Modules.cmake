@@ -1,0 +1,46 @@
+# raygrain_module(NAME USES module... PRIVATE library...): the sources under src/NAME as a static library raygrain_NAME.
+# raygrain_library(): all modules as the one library that is installed.
+
+add_library(raygrain_options INTERFACE)
+target_compile_features(raygrain_options INTERFACE cxx_std_20)
+target_compile_options(raygrain_options INTERFACE
+  -Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off
+  $<$<BOOL:${RAYGRAIN_SANITIZE}>:-fsanitize=${RAYGRAIN_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all>
+  $<$<BOOL:${RAYGRAIN_COVERAGE}>:--coverage -O1>)
+target_link_options(raygrain_options INTERFACE
+  $<$<BOOL:${RAYGRAIN_SANITIZE}>:-fsanitize=${RAYGRAIN_SANITIZE}>
+  $<$<BOOL:${RAYGRAIN_COVERAGE}>:--coverage>)
+target_compile_definitions(raygrain_options INTERFACE
+  $<$<OR:$<CONFIG:Debug>,$<BOOL:${RAYGRAIN_CHECKS}>>:RAYGRAIN_CHECKS>
+  $<$<BOOL:${RAYGRAIN_STD_THREADS}>:RAYGRAIN_STD_THREADS>)
+
+set(RAYGRAIN_MODULES "" CACHE INTERNAL "")
+
+function(raygrain_module name)
+  cmake_parse_arguments(ARG "" "" "USES;PRIVATE" ${ARGN})
+  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
+  add_library(raygrain_${name} STATIC ${sources})
+  set_target_properties(raygrain_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON LINKER_LANGUAGE CXX)
+  target_include_directories(raygrain_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  list(TRANSFORM ARG_USES PREPEND raygrain_)
+  target_link_libraries(raygrain_${name} PUBLIC ${ARG_USES} PRIVATE raygrain_options ${ARG_PRIVATE})
+  if(name STREQUAL base)
+    target_link_libraries(raygrain_base PRIVATE Threads::Threads $<$<NOT:$<BOOL:${RAYGRAIN_STD_THREADS}>>:TBB::tbb>)
+  endif()
+  set(RAYGRAIN_MODULES ${RAYGRAIN_MODULES} ${name} CACHE INTERNAL "")
+endfunction()
+
+function(raygrain_library)
+  set(objects "")
+  foreach(module ${RAYGRAIN_MODULES})
+    list(APPEND objects $<TARGET_OBJECTS:raygrain_${module}>)
+  endforeach()
+  add_library(raygrain ${objects})
+  add_library(raygrain::raygrain ALIAS raygrain)
+  set_target_properties(raygrain PROPERTIES LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
+  target_compile_features(raygrain PUBLIC cxx_std_20)
+  target_include_directories(raygrain PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+                                             $<INSTALL_INTERFACE:include>)
+  target_link_libraries(raygrain PRIVATE Threads::Threads $<$<NOT:$<BOOL:${RAYGRAIN_STD_THREADS}>>:TBB::tbb>
+                                         assimp::assimp fmt::fmt $<BUILD_INTERFACE:raygrain_options>)
+endfunction()

@@ -1,0 +1,137 @@
+// Builders: from boxes, centroids, a measure and an orientation to a binary tree. They never see rays, areas or meshes.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "raygrain/bvh.h"
+#include "raygrain/measure.h"
+#include "raygrain/orientation.h"
+
+namespace raygrain {
+
+/// What a ray pays (section 8 of the paper): for each inner box it meets, and for each triangle of a leaf that it
+/// meets. Builder, estimate and real cost use the same two numbers.
+struct CostModel {
+  float inner = 2.0f;
+  float triangle = 1.2f;
+};
+
+/// Table 1 of the paper. Leaf rules are `<`, so 0 switches them off.
+struct PaperParameters {
+  float max_leaf_cost = 0;                 // a node of lower cost (measure / total * count * triangle cost) is a leaf
+  float max_leaf_area = 0;                 // a node of lower measure is a leaf
+  float max_leaf_hit_probability = 0;      // a node of lower measure / total is a leaf
+  uint32_t max_triangles_per_leaf = 2;     // a node with *fewer* triangles is a leaf
+  uint32_t max_levels = 100;               // nodes at this level are leaves; <= kMaxTreeLevels
+  uint32_t bins = 40;                      // slices per axis, bins - 1 interior planes; 2 ... 4096
+  uint32_t max_non_fallback_levels = 100;  // deeper nodes use the fallback strategy
+  float split_plane_quality_threshold = 0.4f;  // in [0, 1]: axes below it are not tried
+  float acceptable_ratio = 1.3f;               // (p_left + p_right) / p_node, lower is better
+  float excellent_ratio = 0.9f;
+};
+
+/// Cost of a node that would be a leaf, from its measure and triangle count.
+using NodeCost = std::function<float(float measure, uint32_t count)>;
+
+/// Appends candidate plane positions, ascending, along an axis of the node. `centroids` bounds the node's centroids.
+using CandidatePlanes = std::function<void(const NodeContext&, const Bounds& centroids, int axis, uint32_t bins,
+                                           std::vector<float>& planes)>;
+
+/// The position of a primitive along an axis: left of a plane when it is less.
+using PartitionRule = std::function<float(const Bounds&, Vec3 centroid, int axis)>;
+
+/// What is known when the next orientation is up (figure 9 of the paper).
+struct SplitState {
+  NodeContext node;
+  float node_measure = 0;
+  bool has_split = false;  // a split was found along an earlier orientation
+  float ratio = kInf;      // (p_left + p_right) / p_node of the best split so far; infinity without one
+  AxisChoice next;
+  int tried = 0;  // orientations tried so far
+};
+
+enum class SplitVerdict {
+  kTry,                // try the next orientation
+  kSatisfied,          // stop with the best so far
+  kFallBack,           // let the fallback strategy split; keep the better under the primary measure
+  kFallBackReplacing,  // let the fallback strategy split and forget the best so far (as the published runs did)
+};
+using SplitDecision = std::function<SplitVerdict(const SplitState&, const PaperParameters&)>;
+
+/// What a stop rule may know of a node. `probability` = measure / total.
+struct StopState {
+  NodeContext node;
+  float measure = 0, probability = 0, cost = 0;
+};
+using StopRule = std::function<bool(const StopState&, const PaperParameters&)>;
+
+/// Everything a builder lets its user replace. An empty function means the default named beside it.
+struct BuildStrategy {
+  RayMeasure measure;            // surface area
+  SplitOrientation orientation;  // all_axes_orientation()
+  NodeCost cost;                 // measure * count
+  CandidatePlanes planes;        // `bins` equal slices of the node's box
+  PartitionRule partition;       // the centroid's coordinate
+  SplitDecision decision;        // decide_split
+  StopRule stop;                 // stop_by_parameters
+};
+
+/// Options of every builder. The default is a good general tree.
+struct BuildOptions {
+  BuildStrategy strategy;
+  std::optional<BuildStrategy> fallback;  // build_paper only; without one a fallback verdict means kSatisfied
+  PaperParameters parameters;
+  CostModel costs;
+  bool split_inseparable = true;  // where no candidate plane separates the centroids, cut their own box instead
+  bool merge_leaves = false;      // build_binned: make a leaf of up to `leaf_size` where splitting costs more
+  uint32_t leaf_size = 4;
+  uint64_t seed = 1;  // of NodeContext::seed
+};
+
+/// Figure 9: ratio <= excellent: satisfied; next quality >= threshold: try; ratio <= acceptable: satisfied; else fall
+/// back.
+SplitVerdict decide_split(const SplitState& state, const PaperParameters& parameters);
+
+/// The leaf rules of Table 1.
+bool stop_by_parameters(const StopState& state, const PaperParameters& parameters);
+
+/// What happened at one node, parallel to Bvh::nodes.
+struct NodeLog {
+  int8_t axis = -1;          // split axis, -1 for leaves
+  uint8_t orientations = 0;  // orientations tried (failed attempts in final leaves count too)
+  bool fallback = false;     // split by the fallback strategy (forced by the decision, or by the level)
+  bool forced = false;       // fallback because of the decision, not of the level
+  float quality = 0;         // of the split axis
+  float ratio = kInf;        // (p_left + p_right) / p_node of the split
+};
+
+/// Seconds of one build, by part; parts do not overlap. Times only; everything else in a log is deterministic.
+struct BuildTimes {
+  double total = 0, orientations = 0, candidates = 0, partition = 0, stop = 0, nodes = 0;
+};
+
+struct BuildLog {
+  std::vector<NodeLog> nodes;
+  BuildTimes times;
+};
+
+/// Algorithm 1 of the paper, iterative: orientations in the strategy's order, `bins` slices each, the decision of
+/// figure 9, fallback. `centroids[i]` is the barycentre of primitive i. Throws Error kUsage for parameters out of
+/// range, kBadHeuristic (with the node) for a measure that is negative or not finite or an orientation with a wrong
+/// axis.
+Bvh build_paper(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
+                BuildLog* log = nullptr);
+
+/// Binned top-down construction after Wald, "On fast construction of SAH-based bounding volume hierarchies" (2007): one
+/// pass over the primitives for all axes, prefix and suffix sweeps over the bins, the best plane of all axes that the
+/// orientation strategy names. Bins the box of the centroids. Ignores `fallback` and `decision`. Same errors.
+Bvh build_binned(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
+                 BuildLog* log = nullptr);
+
+/// Throws Error (kUsage, naming the field) for values out of range.
+void validate(const BuildOptions& options);
+
+}  // namespace raygrain

@@ -1,0 +1,37 @@
+// The measures and orientations of the paper, ready made.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "raygrain/area.h"
+#include "raygrain/measure.h"
+#include "raygrain/orientation.h"
+#include "raygrain/ray.h"
+
+namespace raygrain {
+
+/// SAH: surface area / 4 (Goldsmith and Salmon 1987, MacDonald and Booth 1990); total = the root's.
+RayMeasure surface_area_measure();
+
+/// PAH for parallel rays as three face weights |direction|. `direction` need not have unit length.
+RayMeasure directional_measure(Vec3 direction);
+
+/// PAH: projected area of a box as the area's rays see it. kWindow: culled to the window, total = window area, so
+/// measure / total is the absolute hit probability; kNone: total = the root's.
+RayMeasure projected_area_measure(const InfluenceArea& area, Culling culling = Culling::kWindow);
+
+/// Counts the sample rays that meet a box (as infinite lines cut to [tmin, tmax]); total = their number.
+RayMeasure sampled_measure(std::vector<Ray> rays);
+
+/// LSPH: quality = extent / longest extent.
+SplitOrientation longest_axis_orientation();
+
+/// SPFH (section 7 of the paper): value_k = |v_k| / (|v_x| + |v_y| + |v_z|), quality_k = (1 - value_k)^2. v is the
+/// plane normal; for a point area node centre - eye, or the area's axis where the node holds the eye.
+SplitOrientation facing_orientation(const InfluenceArea& area);
+
+/// One axis per level: (parent_axis + 1) mod 3 first, the others after it with lower quality.
+SplitOrientation round_robin_orientation();
+
+}  // namespace raygrain

@@ -1,0 +1,58 @@
+// Convex regions: boxes, oriented boxes and frusta, all as six planes and eight corners.
+#pragma once
+
+#include <array>
+
+#include "raygrain/bounds.h"
+#include "raygrain/frame.h"
+#include "raygrain/ray.h"
+
+namespace raygrain {
+
+/// The half space dot(normal, p) <= offset; the normal has unit length and points outward.
+struct Plane {
+  Vec3d normal;
+  double offset = 0;
+};
+
+/// A convex hexahedron. Corner i: bit 0 = +right, bit 1 = +up, bit 2 = far, as in `corner(Bounds, i)`.
+///
+/// Every test is conservative by `slack`, a length that exceeds all rounding of float input on this region's scale
+/// (docs/theory.md): a point is inside when it is within `slack` of all planes; a triangle or box overlaps when it
+/// comes within 2 * slack. So whatever a ray that starts inside meets at or before `exit_distance` overlaps the region.
+struct ConvexRegion {
+  std::array<Plane, 6> planes;
+  std::array<Vec3d, 8> corners;
+  std::array<Vec3d, 6> edges;  // unit directions of the edges, `edge_count` of them distinct
+  int edge_count = 0;
+  double slack = 0;
+};
+
+/// The region of an axis-aligned box.
+ConvexRegion box_region(const Bounds& box);
+
+/// The box centred on the frame's axes: |x| <= half_width, |y| <= half_height, 0 <= z <= depth in frame coordinates.
+ConvexRegion oriented_box_region(const Frame& frame, double half_width, double half_height, double depth);
+
+/// The frustum |x| <= tan_half_x * z, |y| <= tan_half_y * z, near_z <= z <= far_z in frame coordinates.
+ConvexRegion frustum_region(const Frame& frame, double tan_half_x, double tan_half_y, double near_z, double far_z);
+
+/// Is the point inside (within slack)?
+bool contains(const ConvexRegion& region, Vec3 point);
+
+/// Does the closed triangle come within 2 * slack? By separating axes (Eberly, "Intersection of convex objects: the
+/// method of separating axes", 2001). Degenerate triangles (segments, points) are tested as what they are.
+bool overlaps(const ConvexRegion& region, Vec3 a, Vec3 b, Vec3 c);
+bool overlaps(const ConvexRegion& region, const Bounds& box);
+
+/// Is the whole box inside (within slack)? An empty box is not.
+bool encloses(const ConvexRegion& region, const Bounds& box);
+
+/// The ray parameter t >= 0 at which a ray that starts inside leaves the region, rounded down. Infinite if it never
+/// does; 0 for an origin outside.
+float exit_distance(const ConvexRegion& region, const Ray& ray);
+
+/// The axis-aligned box around the region with its slack, rounded outward.
+Bounds region_bounds(const ConvexRegion& region);
+
+}  // namespace raygrain

@@ -1,0 +1,74 @@
+// The one table that turns names into measures, orientations and builders, for command line, studies and bindings.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "raygrain/build.h"
+#include "raygrain/heuristics.h"
+
+namespace raygrain {
+
+/// What a named heuristic may be made for. `area` may be null (global trees); `samples` may be empty.
+struct HeuristicInput {
+  const InfluenceArea* area = nullptr;
+  std::span<const Ray> samples;
+};
+
+struct MeasureEntry {
+  std::string name, description;
+  bool needs_area = false, needs_samples = false;
+  std::function<RayMeasure(const HeuristicInput&)> make;
+};
+
+struct OrientationEntry {
+  std::string name, description;
+  bool needs_area = false;
+  bool all_axes = false;  // every axis admissible, excellent threshold 0
+  std::function<SplitOrientation(const HeuristicInput&)> make;
+};
+
+using BuildFunction = Bvh (*)(std::span<const Bounds>, std::span<const Vec3>, const BuildOptions&, BuildLog*);
+
+struct BuilderEntry {
+  std::string name, description;
+  BuildFunction build = nullptr;
+};
+
+/// A value: copy the default one and add rows to it to make own heuristics available by name.
+struct Registry {
+  std::vector<MeasureEntry> measures;          // SAH, PAH, PAH-UNCULLED, DIR, SAMPLED
+  std::vector<OrientationEntry> orientations;  // LSPH, SPFH, ALL, ROBIN
+  std::vector<BuilderEntry> builders;          // paper, binned
+};
+
+Registry default_registry();
+
+/// A tree by name: MEASURE+ORIENTATION or MEASURE+ORIENTATION@BUILDER, e.g. "PAH+SPFH", "SAH+ALL@binned".
+struct Recipe {
+  std::string measure = "SAH", orientation = "ALL", builder = "paper";
+  PaperParameters parameters;
+};
+
+/// "MEASURE+ORIENTATION", with "@BUILDER" unless it is `paper`.
+std::string recipe_name(const Recipe& recipe);
+
+/// Throws Error (kUsage) that lists what is known and names the nearest match, for text that is no recipe.
+/// Case-insensitive.
+Recipe parse_recipe(std::string_view text, const Registry& registry);
+
+bool needs_area(const Recipe& recipe, const Registry& registry);
+bool needs_samples(const Recipe& recipe, const Registry& registry);
+
+/// Options of the preset `paper`: the recipe's measure and orientation, fallback SAH + LSPH, all thresholds from
+/// recipe.parameters ("+ALL": quality threshold 0 and excellent ratio 0). Throws Error (kUsage) when the recipe needs
+/// an area or samples and there are none.
+BuildOptions make_build_options(const Recipe& recipe, const Registry& registry, const HeuristicInput& input);
+
+/// Builds the recipe's tree.
+Bvh build_tree(const Recipe& recipe, const Registry& registry, const HeuristicInput& input,
+               std::span<const Bounds> bounds, std::span<const Vec3> centroids, BuildLog* log = nullptr);
+
+}  // namespace raygrain

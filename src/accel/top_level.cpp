@@ -1,0 +1,1 @@
+#include "raygrain/top_level.h"

@@ -1,0 +1,1 @@
+#include "raygrain/bvh.h"

@@ -1,0 +1,1 @@
+#include "raygrain/compare.h"
