@@ -17,12 +17,12 @@ struct NamedMesh {
   Vec3 inside{};        // a point well inside, for closed meshes
 };
 
-/// closed, open, empty, one_triangle, sliver, degenerate, duplicate, huge, tiny, far, large_triangles, soup ...: at most a few
-/// hundred triangles each, so that brute force stays cheap.
+/// closed, open, empty, one_triangle, sliver, degenerate, duplicate, huge, tiny, far, large_triangles, soup ...: at
+/// most a few hundred triangles each, so that brute force stays cheap.
 std::vector<NamedMesh> mesh_families(uint64_t seed);
 
-/// A mix: random, aimed at edges, at vertices, axis-parallel, lying in faces' planes, grazing, starting on surfaces, with finite
-/// [tmin, tmax], a few invalid (NaN, zero direction).
+/// A mix: random, aimed at edges, at vertices, axis-parallel, lying in faces' planes, grazing, starting on surfaces,
+/// with finite [tmin, tmax], a few invalid (NaN, zero direction).
 std::vector<Ray> aimed_rays(const TriangleMesh& mesh, size_t count, uint64_t seed);
 
 }  // namespace raygrain::test
