@@ -1,0 +1,88 @@
+# raygrain in two commands on a bare Debian 12: `make demo` and `make test`. Everything else is here too: `make help`.
+SHELL := /bin/bash
+JOBS ?= $(shell nproc)
+RELEASE := build/release
+ASAN := build/asan
+PRESET = cmake --preset $(1) --log-level=WARNING
+CTEST = ctest --output-on-failure -j $(JOBS)
+# The tests that run under the sanitizers on every change: everything below the program.
+CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_accel test_rays test_io test_analyze
+
+.PHONY: help build demo test test-full asan-test release-test tsan-test clang-test coverage format check-format tidy \
+        dependencies full-dependencies install clean
+
+help:            ## this list
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*##/\t/' | expand -t 20
+
+dependencies:
+	@scripts/install-dependencies.sh build
+
+full-dependencies:
+	@scripts/install-dependencies.sh full
+
+build: dependencies ## install what is needed, build library and program into build/release
+	@$(call PRESET,release)
+	@cmake --build $(RELEASE) -j $(JOBS) --target raygrain raygrain_cli
+	@echo "The program is $(RELEASE)/bin/raygrain"
+
+demo: build      ## build, then compare the paper's heuristics on a built-in city under a low sun
+	@scripts/demo.sh $(RELEASE)/bin/raygrain build/demo
+
+test: dependencies ## everything a commit must pass: sanitizers on the core, then all tests in release
+	@$(MAKE) --no-print-directory asan-test
+	@$(MAKE) --no-print-directory release-test
+
+asan-test:
+	@$(call PRESET,asan)
+	@cmake --build $(ASAN) -j $(JOBS) --target $(CORE_TESTS)
+	@cd $(ASAN) && RAYGRAIN_TEST_SCALE=small $(CTEST) -R '^core\.'
+
+release-test:
+	@$(call PRESET,release)
+	@cmake --build $(RELEASE) -j $(JOBS)
+	@cd $(RELEASE) && $(CTEST)
+
+test-full: full-dependencies ## all of it: ThreadSanitizer, Clang, coverage, clang-tidy, the full ray counts
+	@$(MAKE) --no-print-directory check-format
+	@$(MAKE) --no-print-directory tidy
+	@$(MAKE) --no-print-directory tsan-test
+	@$(MAKE) --no-print-directory clang-test
+	@$(MAKE) --no-print-directory coverage
+	@$(MAKE) --no-print-directory asan-test
+	@$(call PRESET,release)
+	@cmake --build $(RELEASE) -j $(JOBS)
+	@cd $(RELEASE) && RAYGRAIN_TEST_SCALE=full $(CTEST)
+
+tsan-test:
+	@$(call PRESET,tsan)
+	@cmake --build build/tsan -j $(JOBS) --target $(CORE_TESTS) test_study test_report
+	@cd build/tsan && RAYGRAIN_TEST_SCALE=small $(CTEST) -R '^core\.|^study\.|^report\.'
+
+clang-test:
+	@$(call PRESET,clang)
+	@cmake --build build/clang -j $(JOBS)
+	@cd build/clang && $(CTEST)
+
+coverage:        ## line coverage of src/, as text and HTML in build/coverage
+	@$(call PRESET,coverage)
+	@cmake --build build/coverage -j $(JOBS)
+	@cd build/coverage && find . -name '*.gcda' -delete && RAYGRAIN_TEST_SCALE=small $(CTEST)
+	@mkdir -p build/coverage/html
+	@gcovr --root . --filter 'src/' --object-directory build/coverage --html-details build/coverage/html/index.html \
+	   --print-summary --txt build/coverage/coverage.txt
+
+format:          ## clang-format on every source
+	@scripts/sources.sh | xargs clang-format -i
+
+check-format:
+	@scripts/sources.sh | xargs clang-format --dry-run -Werror
+
+tidy:            ## clang-tidy on the library and the program
+	@$(call PRESET,clang)
+	@scripts/sources.sh | grep -E '^(src|cli)/.*\.cpp$$' | xargs -P $(JOBS) -n 4 clang-tidy -p build/clang --quiet 2>/dev/null
+
+install: build   ## install into PREFIX (default /usr/local)
+	@cmake --install $(RELEASE) --prefix $(or $(PREFIX),/usr/local)
+
+clean:           ## remove all builds
+	@rm -rf build
