@@ -3,9 +3,10 @@
 
 #include <array>
 #include <functional>
-#include <optional>
+#include <limits>
 #include <span>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "raygrain/accelerator.h"
@@ -15,6 +16,8 @@
 #include "raygrain/fields.h"
 #include "raygrain/measure.h"
 #include "raygrain/ray.h"
+#include "raygrain/top_level.h"
+#include "raygrain/trace.h"
 
 namespace raygrain {
 
@@ -29,13 +32,25 @@ struct TreeStats {
   size_t max_triangles_per_leaf = 0;
   uint32_t max_level = 0;  // depth in edges
   double mean_leaf_depth = 0;
-  double small_child_ratio = 0,
-         large_child_ratio = 0;  // mean over inner nodes of measure(smaller, larger child) / parent
-  size_t memory_bytes = 0;       // measured
-  size_t paper_memory_bytes =
-      0;  // the paper's section 9.6 formula: 40 B per inner node, 32 B + 8 B per triangle per leaf
+  double small_child_ratio = 0, large_child_ratio = 0;  // mean over inner nodes of measure(smaller, larger child) / own
+  size_t memory_bytes = 0;                              // measured
+  size_t paper_memory_bytes = 0;                        // see below
 };
 TreeStats analyze(const Bvh& bvh, const RayMeasure& measure, const CostModel& costs = {});
+
+/// Memory as section 9.6 of the paper counts it: 40 B per node (a box of 24 B and two pointers), and 4 B per triangle
+/// of a leaf.
+constexpr size_t paper_memory_bytes(size_t nodes, size_t triangles) {
+  return 40 * nodes + 4 * triangles;
+}
+/// The same for an influence area (184 B for a plane area, 336 B for a point area) ...
+constexpr size_t paper_memory_bytes(const InfluenceArea& area) {
+  return std::holds_alternative<PlaneArea>(area.shape) ? 184 : 336;
+}
+/// ... and for an octree: 56 B per node (a box and eight pointers of 4 B), and 4 B per area that a leaf lists.
+constexpr size_t paper_octree_bytes(size_t nodes, size_t listed_areas) {
+  return 56 * nodes + 4 * listed_areas;
+}
 
 /// Sum of area(left hull with right hull) / sum of min(area left, area right) over inner nodes of level <=
 /// kOverlapLevels[i]; 0 where the denominator is.
@@ -57,7 +72,8 @@ struct TraceStats {
   size_t rays = 0, hits = 0;
   double real_cost = 0;    // mean over rays, full traversal: +inner per inner box met, +n * triangle per leaf met
   double pruned_cost = 0;  // the same when the nearest hit so far prunes
-  double hit_ratio = 0;    // hits / rays
+  double real_cost_deviation = 0;  // sample standard deviation of the real cost; / sqrt(rays) is the mean's error
+  double hit_ratio = 0;            // hits / rays
   double inner_hits = 0, leaf_hits = 0, leaf_triangles = 0;  // means per ray, full traversal
 };
 TraceStats analyze_rays(const Bvh& bvh, const TriangleMesh& mesh, std::span<const Ray> rays,
@@ -69,29 +85,42 @@ constexpr double ray_cost(const TraceCounters& c, const CostModel& costs) {
          static_cast<double>(costs.triangle) * static_cast<double>(c.leaf_triangles);
 }
 
-/// Rays through a local tree with the global one behind it: what an area is worth.
+/// The hit ratio above which searching a local tree first costs less than the global tree alone:
+/// local + (1 - h) * miss = global. `local` is the local tree's mean cost over all rays, `miss` the global tree's mean
+/// cost over those without an accepted local hit, `global` its mean over all. Below 0: always; above 1: never; NaN
+/// where `miss` is 0, since nothing is lost then.
+constexpr double break_even_hit_ratio(double local, double miss, double global) {
+  return miss > 0 ? (local + miss - global) / miss : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Rays through a local tree with the global one behind it: what an area is worth. All costs are real costs (full
+/// traversal). A local hit is accepted at or before the ray's exit from the area's region.
 struct FallbackStats {
   size_t rays = 0, served = 0;
-  double local_cost = 0;  // mean real cost in the local tree over the rays that it served
-  double cost_with_fallback =
-      0;                   // mean real cost over all rays: local, plus global for rays without an accepted local hit
-  double global_cost = 0;  // mean real cost of the same rays in the global tree alone
-  double local_miss_cost = 0;       // mean global real cost of the rays without an accepted local hit
-  double hit_ratio = 0;             // accepted local hits / rays
-  double break_even_hit_ratio = 0;  // (C_local + C_miss - C_global) / C_miss: above it the local tree pays; may be < 0
+  double local_cost = 0;          // mean in the local tree over the rays that it serves
+  double cost_with_fallback = 0;  // mean over all rays: local, plus global for rays without an accepted local hit
+  double global_cost = 0;         // mean of the same rays in the global tree alone
+  double local_miss_cost = 0;     // mean in the global tree of the rays without an accepted local hit
+  double hit_ratio = 0;           // accepted local hits / rays
+  double break_even = 0;          // break_even_hit_ratio of these rays
 };
 FallbackStats analyze_fallback(const LocalTree& local, const Bvh& global, const TriangleMesh& mesh,
                                std::span<const Ray> rays, const CostModel& costs = {}, unsigned threads = 0);
 
-/// The top level: shape, and how sharp its answers are.
+/// The top level: shape, and how sharp its answers are. A list has no nodes, and every region in its one "leaf".
 struct TopLevelStats {
   size_t nodes = 0, leaves = 0;
   double areas_per_leaf = 0;
   double false_candidates = 0;  // mean per query point: listed regions that do not contain the point
   size_t memory_bytes = 0;
-  double query_seconds = 0;  // mean per query
+  size_t paper_memory_bytes = 0;  // paper_octree_bytes; 4 B per region for a list
+  double build_seconds = 0;       // 0 where the top level was handed over finished
+  double query_seconds = 0;       // mean per query
 };
 TopLevelStats analyze(const TopLevel& top_level, std::span<const ConvexRegion> regions, std::span<const Vec3> points);
+/// Builds the top level, timed, and analyses it.
+TopLevelStats analyze_top_level(std::span<const ConvexRegion> regions, const TopLevelOptions& options,
+                                std::span<const Vec3> points);
 
 /// A node as custom actions see it.
 struct NodeVisit {
@@ -105,8 +134,10 @@ void visit_nodes(const Bvh& bvh, const std::function<void(const NodeVisit&)>& pe
 void visit_nodes(const TopLevel& top_level, const std::function<void(const TopLevel::Node&, uint32_t level)>& per_node,
                  const std::function<void()>& at_end = {});
 
-/// One row per node for `analyze --nodes`: index, parent, level, first child, triangle count, box, measure,
-/// probability, cost, overlap with sibling and what the log knows. `area` (for overlap) and `log` may be null.
+/// One row per node, by index: index, parent, level, first_child (-1 where there is none), triangles, the box, measure,
+/// probability, cost (its share of the tree's estimated cost), overlap with its sibling (common projected area / the
+/// smaller one's, plain and culled; needs `area`), and what the log knows (axis, orientations, fallback, forced,
+/// quality, ratio; needs `log`). NaN where a value does not exist; `area` and `log` may be null.
 struct NodeTable {
   std::vector<std::string> columns;
   std::vector<std::vector<double>> rows;
@@ -114,8 +145,12 @@ struct NodeTable {
 NodeTable tabulate_nodes(const Bvh& bvh, const RayMeasure& measure, const AreaGeometry* area, const BuildLog* log,
                          const CostModel& costs = {});
 
-/// All metrics of a tree in one row of the field table. `area`, `log`, `trace` and `fallback` may be null.
+/// The metrics of a tree as a row of the field table. All but `tree` may be null. `trace` gives the costs of the rays
+/// through the tree, `fallback` those with the global tree behind it; the hit ratio is the latter's where both are
+/// given.
 FieldValues collect_fields(const TreeStats& tree, const OverlapStats* overlap, const BuildStats* build,
                            const TraceStats* trace, const FallbackStats* fallback);
+/// The metrics of a top level.
+FieldValues collect_fields(const TopLevelStats& top_level);
 
 }  // namespace raygrain

@@ -14,13 +14,15 @@
 namespace raygrain {
 
 struct CompareOptions {
-  std::vector<Recipe> recipes;  // empty: the six of the paper preset (see paper_recipes)
-  size_t rays = 1000;           // per area
+  std::vector<Recipe> recipes;                // empty: the six of the paper preset (see paper_recipes)
+  Recipe global{"SAH", "LSPH", "paper", {}};  // of the tree behind every local one, as in the paper
+  size_t rays = 1000;                         // per area
   uint64_t seed = 1;
   bool verify = false;   // also check every hit against brute force
   unsigned threads = 0;  // 0 = all
   Registry registry = default_registry();
   CostModel costs;
+  MembershipRule membership;  // for experiments; empty: overlap with the region
   /// Told what is being done and how much of the whole is done, in [0, 1]; returning false cancels (Error kCancelled).
   /// Called from one thread at a time.
   std::function<bool(const std::string& step, double done)> progress;

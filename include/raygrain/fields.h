@@ -53,6 +53,17 @@ enum class FieldId : size_t {
   kNodeSeconds,
   kTraceSeconds,
   kMismatches,
+  kRays,
+  kRealCostDeviation,
+  kLocalMissCost,
+  kTopLevelNodes,
+  kTopLevelLeaves,
+  kTopLevelAreasPerLeaf,
+  kTopLevelFalseCandidates,
+  kTopLevelMemoryBytes,
+  kTopLevelPaperMemoryBytes,
+  kTopLevelBuildSeconds,
+  kTopLevelQuerySeconds,
   kCount
 };
 
