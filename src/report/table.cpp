@@ -1,1 +1,0 @@
-#include "raygrain/report.h"
