@@ -18,17 +18,19 @@ struct Plane {
 /// A convex hexahedron. Corner i: bit 0 = +right, bit 1 = +up, bit 2 = far, as in `corner(Bounds, i)`.
 ///
 /// Every test is conservative by `slack`, a length that exceeds all rounding of float input on this region's scale
-/// (docs/theory.md): a point is inside when it is within `slack` of all planes; a triangle or box overlaps when it
-/// comes within 2 * slack. So whatever a ray that starts inside meets at or before `exit_distance` overlaps the region.
+/// (docs/theory-areas.md): a point is inside when it is within `slack` of all planes; a triangle or box overlaps when
+/// some point of it is within 2 * slack of all planes. So whatever a ray that starts inside meets at or before
+/// `exit_distance` overlaps the region.
 struct ConvexRegion {
   std::array<Plane, 6> planes;
   std::array<Vec3d, 8> corners;
-  std::array<Vec3d, 6> edges;  // unit directions of the edges, `edge_count` of them distinct
+  std::array<Vec3d, 8> outer_corners;  // of the hexahedron whose planes are moved out by 2 * slack
+  std::array<Vec3d, 6> edges;          // unit directions of the edges, `edge_count` of them distinct
   int edge_count = 0;
   double slack = 0;
 };
 
-/// The region of an axis-aligned box.
+/// The region of an axis-aligned box, finite and not empty.
 ConvexRegion box_region(const Bounds& box);
 
 /// The box centred on the frame's axes: |x| <= half_width, |y| <= half_height, 0 <= z <= depth in frame coordinates.
@@ -48,9 +50,17 @@ bool overlaps(const ConvexRegion& region, const Bounds& box);
 /// Is the whole box inside (within slack)? An empty box is not.
 bool encloses(const ConvexRegion& region, const Bounds& box);
 
-/// The ray parameter t >= 0 at which a ray that starts inside leaves the region, rounded down. Infinite if it never
-/// does; 0 for an origin outside.
+/// The ray parameter t >= 0 at which a ray that starts inside leaves the region, rounded down: every hit that is
+/// returned with 0 <= t <= exit_distance lies within 2 * slack, so its triangle overlaps. -infinity (no hit is before
+/// it) for an origin outside, and for directions so long that the rounding of t alone exceeds the slack.
 float exit_distance(const ConvexRegion& region, const Ray& ray);
+
+/// The part of a ray, extended both ways, that is inside, rounded inward: every hit that is returned with
+/// enter <= t <= exit lies within 2 * slack. Nothing is inside when enter > exit.
+struct RayInterval {
+  float enter = kInf, exit = -kInf;
+};
+RayInterval inside_interval(const ConvexRegion& region, const Ray& ray);
 
 /// The axis-aligned box around the region with its slack, rounded outward.
 Bounds region_bounds(const ConvexRegion& region);
