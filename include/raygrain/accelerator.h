@@ -19,12 +19,17 @@ namespace raygrain {
 /// wrong: a rule for experiments, not for use.
 using MembershipRule = std::function<bool(const AreaGeometry&, Vec3 a, Vec3 b, Vec3 c)>;
 
+/// Sample rays for recipes whose measure needs them (SAMPLED), of an area or, for a null area, of the global tree. May
+/// be called from several threads.
+using SampleSource = std::function<std::vector<Ray>(const InfluenceArea* area)>;
+
 struct AcceleratorOptions {
   Recipe local{"PAH", "ALL", "binned", {}};   // of each area's tree
   Recipe global{"SAH", "ALL", "binned", {}};  // of the tree that answers all other rays
   TopLevelOptions top_level;
   Registry registry = default_registry();
   MembershipRule membership;  // empty: overlaps(region, a, b, c)
+  SampleSource samples;       // empty: none
   unsigned threads = 0;       // of the build; 0 = all
 };
 
@@ -52,18 +57,21 @@ struct AcceleratorCounters {
   void add(const AcceleratorCounters& other);
 };
 
-/// Immutable, cheap to copy (shared inside), safe to use from many threads.
+/// Immutable, cheap to copy (shared inside), safe to use from many threads. Without areas every ray goes to the global
+/// tree.
 ///
 /// A ray is answered by the local tree of the area that serves it at the lowest predicted cost. A local hit counts only
 /// at or before the exit from that area's region; otherwise the search goes on in the next area that holds the exit
 /// point and serves the ray there, at last in the global tree. Results equal the brute-force oracle's, bit for bit.
-/// Rays with tmin < 0 go straight to the global tree.
+/// Rays with tmin < 0 go straight to the global tree; invalid rays are misses and are counted.
 class Accelerator {
  public:
+  /// Throws Error: kBadMesh, kBadArea (naming the area), kUsage (unknown recipe, option out of range), kBadHeuristic.
   explicit Accelerator(TriangleMesh mesh, std::vector<InfluenceArea> areas = {},
                        const AcceleratorOptions& options = {});
 
-  /// From finished parts, e.g. to share one mesh and global tree between several sets of local trees.
+  /// From finished parts, e.g. to share one mesh and global tree between several sets of local trees. Throws Error:
+  /// kBadMesh, kBadArea, kUsage (a part is missing, or a tree does not fit the mesh).
   Accelerator(std::shared_ptr<const TriangleMesh> mesh, std::vector<LocalTree> locals,
               std::shared_ptr<const Bvh> global, const TopLevelOptions& top_level = {});
 
@@ -87,10 +95,11 @@ std::vector<uint32_t> area_members(const TriangleMesh& mesh, const AreaGeometry&
 
 /// Builds one area's local tree over the triangles that overlap its region; `prims` are triangle ids of `mesh`.
 LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, const Recipe& recipe,
-                           const Registry& registry, const MembershipRule& membership = {});
+                           const Registry& registry, const MembershipRule& membership = {},
+                           std::span<const Ray> samples = {});
 
 /// Builds the recipe's tree over all triangles.
-Bvh build_global_tree(const TriangleMesh& mesh, const Recipe& recipe, const Registry& registry,
-                      BuildLog* log = nullptr);
+Bvh build_global_tree(const TriangleMesh& mesh, const Recipe& recipe, const Registry& registry, BuildLog* log = nullptr,
+                      std::span<const Ray> samples = {});
 
 }  // namespace raygrain

@@ -1,0 +1,49 @@
+// From a mesh and an area to the area's tree.
+#include <numeric>
+
+#include "raygrain/accelerator.h"
+
+#include "accel/estimate.h"
+
+namespace raygrain {
+
+std::vector<uint32_t> area_members(const TriangleMesh& mesh, const AreaGeometry& geometry, const MembershipRule& rule) {
+  std::vector<uint32_t> members;
+  for (uint32_t i = 0; i < mesh.triangle_count(); ++i) {
+    const Vec3 a = mesh.vertex(i, 0), b = mesh.vertex(i, 1), c = mesh.vertex(i, 2);
+    if (rule ? rule(geometry, a, b, c) : overlaps(geometry.region(), a, b, c)) members.push_back(i);
+  }
+  return members;
+}
+
+LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, const Recipe& recipe,
+                           const Registry& registry, const MembershipRule& membership, std::span<const Ray> samples) {
+  const AreaGeometry geometry(area);
+  const std::vector<uint32_t> members = area_members(mesh, geometry, membership);
+  std::vector<Bounds> bounds;
+  std::vector<Vec3> centroids;
+  bounds.reserve(members.size());
+  centroids.reserve(members.size());
+  for (const uint32_t i : members) {
+    bounds.push_back(triangle_bounds(mesh, i));
+    centroids.push_back(triangle_centroid(mesh, i));
+  }
+
+  const HeuristicInput input{&area, samples};
+  LocalTree local;
+  local.area = area;
+  Bvh tree = build_tree(recipe, registry, input, bounds, centroids, &local.log);
+  for (uint32_t& primitive : tree.prims) primitive = members[primitive];
+  const BuildOptions options = make_build_options(recipe, registry, input);
+  local.predicted_cost = estimated_cost(tree, options.strategy.measure, options.costs);
+  local.tree = std::make_shared<const Bvh>(std::move(tree));
+  return local;
+}
+
+Bvh build_global_tree(const TriangleMesh& mesh, const Recipe& recipe, const Registry& registry, BuildLog* log,
+                      std::span<const Ray> samples) {
+  return build_tree(recipe, registry, HeuristicInput{nullptr, samples}, triangle_bounds(mesh), triangle_centroids(mesh),
+                    log);
+}
+
+}  // namespace raygrain
