@@ -102,6 +102,25 @@ TEST(RegionOverlap, HugeTrianglesNeverGetAWrongNo) {
   }
 }
 
+// Slanted triangles whose middle is exactly the origin, which is inside: their projections are all rounding.
+TEST(RegionOverlap, HugeSlantedTrianglesNeverGetAWrongNo) {
+  for (uint64_t seed = 1; seed <= 1000; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    Frame frame = make_frame({}, random_vector(random), random_vector(random));
+    frame.origin = frame.forward * -0.5;
+    const ConvexRegion box = oriented_box_region(frame, 0.3, 0.4, 1);
+    const ConvexRegion frustum = frustum_region(frame, 0.3, 0.4, 0.1, 1);
+    const auto whole = [&] { return static_cast<float>(random.below(2001)) - 1000; };
+    const Vec3 u{whole(), whole(), whole()}, v{whole(), whole(), whole()};
+    for (const float size : {1.0f, 0x1p40f, 0x1p80f, 0x1p115f}) {
+      const Vec3 a = u * size, b = v * size, c = (-u - v) * size;
+      EXPECT_TRUE(overlaps(box, a, b, c)) << size;
+      EXPECT_TRUE(overlaps(frustum, a, b, c)) << size;
+    }
+  }
+}
+
 TEST(RegionOverlap, TouchingTrianglesOverlap) {
   const ConvexRegion region = box_region({{0, 0, 0}, {1, 1, 1}});
   EXPECT_TRUE(overlaps(region, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}));           // a vertex on a corner
