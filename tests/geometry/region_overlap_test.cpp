@@ -111,9 +111,9 @@ TEST(RegionOverlap, HugeSlantedTrianglesNeverGetAWrongNo) {
     frame.origin = frame.forward * -0.5;
     const ConvexRegion box = oriented_box_region(frame, 0.3, 0.4, 1);
     const ConvexRegion frustum = frustum_region(frame, 0.3, 0.4, 0.1, 1);
-    const auto whole = [&] { return static_cast<float>(random.below(2001)) - 1000; };
+    const auto whole = [&] { return static_cast<float>(random.below(0x1000000)) - 0x800000; };
     const Vec3 u{whole(), whole(), whole()}, v{whole(), whole(), whole()};
-    for (const float size : {1.0f, 0x1p40f, 0x1p80f, 0x1p115f}) {
+    for (const float size : {0x1p-20f, 1.0f, 0x1p40f, 0x1p80f, 0x1p103f}) {
       const Vec3 a = u * size, b = v * size, c = (-u - v) * size;
       EXPECT_TRUE(overlaps(box, a, b, c)) << size;
       EXPECT_TRUE(overlaps(frustum, a, b, c)) << size;
