@@ -1,0 +1,91 @@
+#include "study/paper_experiments.h"
+
+namespace raygrain {
+namespace {
+
+constexpr Vec3 kUp{0, 1, 0};
+
+const PaperExperiment kExperiments[] = {
+    {"Wood", "woods.obj", 1, "parallel", PlaneArea{{2.5f, 0.9f, 0}, {-1, 0, 0}, kUp, 1.5f, 0.9f, 10}},
+    {"Wood", "woods.obj", 1, "15deg", PlaneArea{{2.5f, 0.8f, -0.3f}, {-0.966f, 0, 0.259f}, kUp, 1.6f, 1, 10}},
+    {"Wood", "woods.obj", 1, "45deg", PlaneArea{{2.5f, 0.8f, -3}, {-1, 0, 1}, kUp, 1.5f, 1, 10}},
+    {"Wood", "woods.obj", 1, "oblique", PlaneArea{{2.5f, 1.5f, -1}, {-1, -0.3f, 0.4f}, kUp, 1.8f, 1.3f, 20}},
+    {"Wood", "woods.obj", 1, "parallel", PointArea{{2.5f, 0.9f, 0}, {-1, 0, 0}, kUp, 90, 60, 1, 10}},
+    {"Wood", "woods.obj", 1, "15deg", PointArea{{2.5f, 0.8f, -0.3f}, {-0.966f, 0, 0.259f}, kUp, 90, 60, 1, 10}},
+    {"Wood", "woods.obj", 1, "45deg", PointArea{{2.5f, 0.8f, -3}, {-1, 0, 1}, kUp, 90, 60, 1, 10}},
+    {"Wood", "woods.obj", 1, "oblique", PointArea{{2.5f, 1.5f, -1}, {-1, -0.3f, 0.4f}, kUp, 90, 60, 1, 20}},
+    {"Suzanne", "suzanne.obj", 1, "parallel", PlaneArea{{0, 0, 2}, {0, 0, -1}, kUp, 0.9f, 0.9f, 10}},
+    {"Suzanne", "suzanne.obj", 1, "15deg", PlaneArea{{0.5f, 0, 2}, {-0.259f, 0, -0.966f}, kUp, 1, 0.9f, 10}},
+    {"Suzanne", "suzanne.obj", 1, "45deg", PlaneArea{{2, 0, 2}, {-1, 0, -1}, kUp, 1.2f, 0.9f, 10}},
+    {"Suzanne", "suzanne.obj", 1, "oblique", PlaneArea{{1, -0.5f, 2}, {-0.45f, 0.3f, -1}, kUp, 2, 1.5f, 10}},
+    {"Suzanne", "suzanne.obj", 1, "parallel", PointArea{{0, 0, 4}, {0, 0, -1}, kUp, 30, 30, 2, 10}},
+    {"Suzanne", "suzanne.obj", 1, "15deg", PointArea{{1.3f, 0, 5}, {-0.259f, 0, -0.966f}, kUp, 25, 25, 2, 10}},
+    {"Suzanne", "suzanne.obj", 1, "45deg", PointArea{{3.3f, 0, 3}, {-1, 0, -1}, kUp, 30, 30, 2, 10}},
+    {"Suzanne", "suzanne.obj", 1, "oblique", PointArea{{2, -1.2f, 4}, {-0.45f, 0.3f, -1}, kUp, 30, 30, 2, 10}},
+    {"Cottage", "cottage.obj", 1, "parallel", PlaneArea{{10, 2.8f, 0}, {-1, 0, 0}, kUp, 6, 2.6f, 35}},
+    {"Cottage", "cottage.obj", 1, "15deg", PlaneArea{{10, 2.9f, -3}, {-0.966f, 0, 0.259f}, kUp, 6, 2.9f, 35}},
+    {"Cottage", "cottage.obj", 1, "45deg", PlaneArea{{7.5f, 2.9f, -7.5f}, {-1, 0, 1}, kUp, 8, 2.9f, 35}},
+    {"Cottage", "cottage.obj", 1, "oblique", PlaneArea{{10, 5, -8}, {-1, -0.3f, 0.9f}, kUp, 7, 3.3f, 35}},
+    {"Cottage", "cottage.obj", 1, "parallel", PointArea{{15, 2.7f, 0}, {-1, 0, 0}, kUp, 70, 35, 1, 35}},
+    {"Cottage", "cottage.obj", 1, "15deg", PointArea{{15, 2.7f, -3}, {-0.966f, 0, 0.259f}, kUp, 70, 35, 1, 35}},
+    {"Cottage", "cottage.obj", 1, "45deg", PointArea{{13, 2.5f, -13}, {-1, 0, 1}, kUp, 50, 20, 1, 35}},
+    {"Cottage", "cottage.obj", 1, "oblique", PointArea{{15, 7, -11}, {-1, -0.45f, 0.75f}, kUp, 50, 30, 1, 35}},
+    {"CottageWalls", "cottage_walls.obj", 1, "parallel", PlaneArea{{10, 2.8f, 0}, {-1, 0, 0}, kUp, 6, 2.6f, 35}},
+    {"CottageWalls", "cottage_walls.obj", 1, "15deg",
+     PlaneArea{{10, 2.9f, -3}, {-0.966f, 0, 0.259f}, kUp, 6, 2.9f, 35}},
+    {"CottageWalls", "cottage_walls.obj", 1, "45deg", PlaneArea{{7.5f, 2.9f, -7.5f}, {-1, 0, 1}, kUp, 8, 2.9f, 35}},
+    {"CottageWalls", "cottage_walls.obj", 1, "oblique", PlaneArea{{10, 5, -8}, {-1, -0.3f, 0.9f}, kUp, 7, 3.3f, 35}},
+    {"CottageWalls", "cottage_walls.obj", 1, "parallel", PointArea{{15, 2.7f, 0}, {-1, 0, 0}, kUp, 70, 35, 1, 35}},
+    {"CottageWalls", "cottage_walls.obj", 1, "15deg",
+     PointArea{{15, 2.7f, -3}, {-0.966f, 0, 0.259f}, kUp, 70, 35, 1, 35}},
+    {"CottageWalls", "cottage_walls.obj", 1, "45deg", PointArea{{13, 2.5f, -13}, {-1, 0, 1}, kUp, 50, 20, 1, 35}},
+    {"CottageWalls", "cottage_walls.obj", 1, "oblique",
+     PointArea{{15, 7, -11}, {-1, -0.45f, 0.75f}, kUp, 50, 30, 1, 35}},
+    {"Crowd", "crowd.ply", 1, "parallel", PlaneArea{{2, 2.2f, -8}, {0, 0, 1}, kUp, 7, 1.8f, 30}},
+    {"Crowd", "crowd.ply", 1, "15deg", PlaneArea{{-2.5f, 2.2f, -8}, {0.259f, 0, 0.966f}, kUp, 7.5f, 1.8f, 30}},
+    {"Crowd", "crowd.ply", 1, "45deg", PlaneArea{{-8, 2.2f, -8}, {1, 0, 1}, kUp, 9, 1.8f, 30}},
+    {"Crowd", "crowd.ply", 1, "oblique", PlaneArea{{-6, 7, -8}, {0.6f, -0.4f, 1}, kUp, 7.5f, 3.4f, 35}},
+    {"Crowd", "crowd.ply", 1, "parallel", PointArea{{2, 2.2f, -8}, {0, 0, 1}, kUp, 130, 45, 1, 30}},
+    {"Crowd", "crowd.ply", 1, "15deg", PointArea{{-2.5f, 2.2f, -8}, {0.259f, 0, 0.966f}, kUp, 130, 45, 1, 30}},
+    {"Crowd", "crowd.ply", 1, "45deg", PointArea{{-8, 2.2f, -8}, {1, 0, 1}, kUp, 130, 45, 1, 30}},
+    {"Crowd", "crowd.ply", 1, "oblique", PointArea{{-6, 7, -8}, {0.6f, -0.4f, 1}, kUp, 130, 45, 1, 35}},
+    {"Random100", "procedural:random100", 1, "parallel", PlaneArea{{5, 5, -4}, {0, 0, 1}, kUp, 5, 5, 20}},
+    {"Random100", "procedural:random100", 1, "15deg", PlaneArea{{3.5f, 5, -4}, {0.259f, 0, 0.966f}, kUp, 6.5f, 5, 20}},
+    {"Random100", "procedural:random100", 1, "45deg", PlaneArea{{-3, 5, -3}, {1, 0, 1}, kUp, 7, 5, 20}},
+    {"Random100", "procedural:random100", 1, "oblique",
+     PlaneArea{{10, 12, -3}, {-0.55f, -0.9f, 1}, kUp, 6.5f, 6.5f, 20}},
+    {"Random100", "procedural:random100", 1, "parallel", PointArea{{5, 5, -4}, {0, 0, 1}, kUp, 90, 90, 1, 20}},
+    {"Random100", "procedural:random100", 1, "15deg",
+     PointArea{{3.5f, 5, -4}, {0.259f, 0, 0.966f}, kUp, 90, 90, 1, 20}},
+    {"Random100", "procedural:random100", 1, "45deg", PointArea{{-3, 5, -3}, {1, 0, 1}, kUp, 60, 90, 1, 20}},
+    {"Random100", "procedural:random100", 1, "oblique",
+     PointArea{{10, 12, -3}, {-0.55f, -0.9f, 1}, kUp, 60, 60, 1, 20}},
+    {"Random1000", "procedural:random1000", 1, "parallel", PlaneArea{{5, 5, -4}, {0, 0, 1}, kUp, 5, 5, 20}},
+    {"Random1000", "procedural:random1000", 1, "15deg",
+     PlaneArea{{3.5f, 5, -4}, {0.259f, 0, 0.966f}, kUp, 6.5f, 5, 20}},
+    {"Random1000", "procedural:random1000", 1, "45deg", PlaneArea{{-3, 5, -3}, {1, 0, 1}, kUp, 7, 5, 20}},
+    {"Random1000", "procedural:random1000", 1, "oblique",
+     PlaneArea{{10, 12, -3}, {-0.55f, -0.9f, 1}, kUp, 6.5f, 6.5f, 20}},
+    {"Random1000", "procedural:random1000", 1, "parallel", PointArea{{5, 5, -4}, {0, 0, 1}, kUp, 90, 90, 1, 20}},
+    {"Random1000", "procedural:random1000", 1, "15deg",
+     PointArea{{3.5f, 5, -4}, {0.259f, 0, 0.966f}, kUp, 90, 90, 1, 20}},
+    {"Random1000", "procedural:random1000", 1, "45deg", PointArea{{-3, 5, -3}, {1, 0, 1}, kUp, 60, 90, 1, 20}},
+    {"Random1000", "procedural:random1000", 1, "oblique",
+     PointArea{{10, 12, -3}, {-0.55f, -0.9f, 1}, kUp, 60, 60, 1, 20}},
+    {"Sponza", "sponza.ply", 1.5f, "parallel", PlaneArea{{-9, 11, -1}, {1, 0, 0}, kUp, 16, 11, 50}},
+    {"Sponza", "sponza.ply", 1.5f, "15deg", PlaneArea{{-12, 11, 0.5f}, {0.966f, 0, -0.259f}, kUp, 16, 11, 60}},
+    {"Sponza", "sponza.ply", 1.5f, "45deg", PlaneArea{{-10, 11, 18}, {1, 0, -1}, kUp, 25, 11, 70}},
+    {"Sponza", "sponza.ply", 1.5f, "oblique", PlaneArea{{-12, 10, 7.2f}, {0.84f, 0.26f, -0.48f}, kUp, 16, 11, 70}},
+    {"Sponza", "sponza.ply", 1.5f, "parallel", PointArea{{-9, 11, -1}, {1, 0, 0}, kUp, 70, 50, 1, 50}},
+    {"Sponza", "sponza.ply", 1.5f, "15deg", PointArea{{-12, 11, 0.5f}, {0.966f, 0, -0.259f}, kUp, 70, 50, 1, 60}},
+    {"Sponza", "sponza.ply", 1.5f, "45deg", PointArea{{-10, 11, 18}, {1, 0, -1}, kUp, 90, 50, 1, 70}},
+    {"Sponza", "sponza.ply", 1.5f, "oblique", PointArea{{-12, 10, 7.2f}, {0.84f, 0.26f, -0.48f}, kUp, 70, 50, 1, 70}},
+};
+
+}  // namespace
+
+std::span<const PaperExperiment> paper_experiments() {
+  return kExperiments;
+}
+
+}  // namespace raygrain

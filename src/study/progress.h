@@ -1,0 +1,33 @@
+// Tells a callback how far a job is, and lets it cancel.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "raygrain/error.h"
+
+namespace raygrain {
+
+class Progress {
+ public:
+  using Callback = std::function<bool(const std::string& step, double done)>;
+
+  Progress(const Callback& callback, size_t steps) : callback_(callback), steps_(steps) {}
+
+  /// Announces the next step. Throws Error (kCancelled) when the callback returns false.
+  void begin(const std::string& step) {
+    const double done = static_cast<double>(begun_++) / static_cast<double>(steps_);
+    if (callback_ && !callback_(step, done)) throw Error(ErrorCode::kCancelled, step, "cancelled");
+  }
+  /// All steps are done.
+  void finish() {
+    begun_ = steps_;
+    begin("done");
+  }
+
+ private:
+  const Callback& callback_;
+  size_t steps_, begun_ = 0;
+};
+
+}  // namespace raygrain
