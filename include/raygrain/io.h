@@ -48,15 +48,20 @@ void save_scene(const Scene& scene, const std::string& path);
 /// A JSON file with "areas" alone (the --areas option), or a whole scene.json's areas.
 std::vector<InfluenceArea> load_areas(const std::string& path);
 
-/// CSV with header ox,oy,oz,dx,dy,dz and optional tmin,tmax (default 0, inf). Errors name file:line:column.
+/// CSV with header ox,oy,oz,dx,dy,dz and optional tmin,tmax (default 0, inf), columns in any order; inf and nan are
+/// numbers; blank lines and lines that start with # are skipped. Throws Error: kNotFound, kUnreadable, kMalformed with
+/// file:line:column (bytes, from 1).
 std::vector<Ray> load_rays(const std::string& path);
+
+/// Numbers are written so that load_rays returns the same bits (NaN stays NaN).
 void save_rays(std::span<const Ray> rays, const std::string& path);
 
 /// CSV with header t,u,v,triangle; a miss is inf,0,0,-1.
 void save_hits(std::span<const Hit> hits, const std::string& path);
 
-/// The nodes of a tree as JSON (format "raygrain-tree", version 1), with optional extra fields already rendered as JSON
-/// objects to embed under "info".
+/// The nodes of a tree as JSON: {"format": "raygrain-tree", "version": 1, "info": {...}, "node_fields": [...], "nodes":
+/// [[lo_x, lo_y, lo_z, hi_x, hi_y, hi_z, first, count], ...], "prims": [...]}, meaning what Bvh says; a coordinate that
+/// is not finite is null. `info_json` is a rendered JSON object for "info"; empty: {}.
 void save_tree_json(const Bvh& bvh, const std::string& info_json, const std::string& path);
 
 /// Writes a whole file or none: into a temporary file beside `path`, flushed, then renamed over it. A failure throws
@@ -75,6 +80,8 @@ struct Image {
   uint32_t width = 0, height = 0;
   std::vector<uint8_t> rgb;
 };
+
+/// Throws Error: kUsage (no pixels, or not width * height of them), kLimit (over 1 GiB), kUnwritable.
 void save_png(const Image& image, const std::string& path);
 
 }  // namespace raygrain

@@ -1,0 +1,101 @@
+#include "io/text.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <system_error>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "raygrain/error.h"
+
+namespace raygrain {
+
+namespace {
+
+/// What is beyond float: too small is zero, too large is no number. Overflow and underflow look alike to from_chars.
+std::optional<float> parse_extreme(std::string_view text) {
+  double value = 0;
+  if (std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc::result_out_of_range) {
+    const size_t exponent = text.find_first_of("eE");
+    if (exponent == std::string_view::npos || !text.substr(exponent + 1).starts_with('-')) return std::nullopt;
+    value = text.front() == '-' ? -0.0 : 0.0;
+  }
+  const float narrowed = static_cast<float>(value);
+  if (narrowed - narrowed != 0) return std::nullopt;
+  return narrowed;
+}
+
+[[noreturn]] void refuse(const std::string& path, int error) {
+  if (error == ENOENT || error == ENOTDIR)
+    throw Error(ErrorCode::kNotFound, path, "there is no such file", "check the name and the folder");
+  throw Error(ErrorCode::kUnreadable, path, "cannot read: " + std::generic_category().message(error));
+}
+
+struct Descriptor {
+  int number;
+  ~Descriptor() {
+    if (number >= 0) ::close(number);
+  }
+};
+
+}  // namespace
+
+std::string read_whole_file(const std::string& path) {
+  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY)};
+  if (file.number < 0) refuse(path, errno);
+  struct stat status {};
+  if (::fstat(file.number, &status) != 0) refuse(path, errno);
+  if (S_ISDIR(status.st_mode)) refuse(path, EISDIR);
+  std::string bytes;
+  size_t used = 0;
+  bytes.resize(static_cast<size_t>(std::max<off_t>(status.st_size, 0)) + 1);
+  for (;;) {
+    if (used == bytes.size()) bytes.resize(bytes.size() * 2 + 4096);
+    const ssize_t count = ::read(file.number, bytes.data() + used, bytes.size() - used);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) refuse(path, errno);
+    if (count == 0) break;
+    used += static_cast<size_t>(count);
+  }
+  bytes.resize(used);
+  return bytes;
+}
+
+std::optional<float> parse_float(std::string_view text) {
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+    if (text.starts_with('-')) return std::nullopt;
+  }
+  float value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::invalid_argument || end != text.data() + text.size()) return std::nullopt;
+  if (error == std::errc::result_out_of_range) return parse_extreme(text);
+  return value;
+}
+
+void append_float(std::string& text, float value) {
+  char buffer[32];
+  text.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+std::string quoted(std::string_view text) {
+  std::string result = "\"";
+  for (const char symbol : text.substr(0, 40)) result += symbol >= ' ' && symbol <= '~' ? symbol : '?';
+  return result + (text.size() > 40 ? "...\"" : "\"");
+}
+
+std::string place(const std::string& path, size_t line, size_t column) {
+  std::string result = path + ":" + std::to_string(line);
+  return column == 0 ? result : result + ":" + std::to_string(column);
+}
+
+}  // namespace raygrain
