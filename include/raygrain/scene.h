@@ -35,11 +35,11 @@ struct Scene {
 
 /// Parameters of a procedural scene; y is up, units are metres, the ground's middle is the origin.
 ///
-/// | kind    | size is                    | default | greatest | triangles         | about 100,000 | about 1,000,000 |
-/// |---------|----------------------------|---------|----------|-------------------|---------------|-----------------|
-/// | city    | blocks per side            | 4       | 70       | about 2,100 size² | 7             | 22              |
-/// | forest  | trees per side             | 8       | 150      | about 420 size²   | 16            | 49              |
-/// | terrain | cells per side of 1 km     | 100     | 2200     | 2 size²           | 224           | 708             |
+/// | kind    | size is                | default | greatest | triangles       | about 100,000 | about 1,000,000 |
+/// |---------|------------------------|---------|----------|-----------------|---------------|-----------------|
+/// | city    | buildings per side     | 8       | 150      | about 440 size² | 15            | 48              |
+/// | forest  | trees per side         | 8       | 150      | about 420 size² | 16            | 49              |
+/// | terrain | cells per side of 1 km | 100     | 2200     | 2 size²         | 224           | 708             |
 struct ProceduralOptions {
   std::string kind = "city";  // city | forest | terrain | random100 | random1000
   uint32_t size = 0;          // 0 = the kind's default; ignored by random100 and random1000

@@ -26,7 +26,7 @@ struct Kind {
 
 // The greatest sizes give about ten million triangles.
 constexpr std::array<Kind, 5> kKinds{{
-    {"city", 4, 70, kAnySeed, make_city},
+    {"city", 8, 150, kAnySeed, make_city},
     {"forest", 8, 150, kAnySeed, make_forest},
     {"terrain", 100, 2200, kAnySeed, make_terrain},
     {"random100", 0, 0, 0xffffffffu,

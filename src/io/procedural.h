@@ -7,7 +7,7 @@
 
 namespace raygrain {
 
-/// size x size blocks on a street grid; about 2000 triangles per block.
+/// size x size buildings, in blocks of four on a street grid; about 440 triangles per building.
 TriangleMesh make_city(uint32_t size, uint64_t seed);
 
 /// size x size trees on rolling ground; about 400 triangles per tree.

@@ -16,18 +16,26 @@ struct Interval {
   double lo, hi;
 };
 
-// Blocks along one axis, centred on 0, every fourth street an avenue.
-std::vector<Interval> block_intervals(Random& random, uint32_t size) {
-  std::vector<Interval> blocks;
+// One side of a block and how many buildings stand along it.
+struct Frontage {
+  Interval extent;
+  uint32_t lots;
+};
+
+// Blocks of two lots (the last of one where `size` is odd) along one axis, centred on 0; every fourth street is an
+// avenue.
+std::vector<Frontage> make_frontages(Random& random, uint32_t size) {
+  std::vector<Frontage> blocks;
   double at = 0;
-  for (uint32_t i = 0; i < size; ++i) {
-    at += i % 4 == 0 ? kAvenue : kStreet;
-    const double width = random.uniform(46, 64);
-    blocks.push_back({at, at + width});
+  for (uint32_t lot = 0; lot < size; lot += 2) {
+    at += lot % 8 == 0 ? kAvenue : kStreet;
+    const uint32_t lots = std::min(2u, size - lot);
+    const double width = lots * random.uniform(23, 31);
+    blocks.push_back({{at, at + width}, lots});
     at += width;
   }
   const double half = (at + kStreet) / 2;
-  for (Interval& block : blocks) block = {block.lo - half, block.hi - half};
+  for (Frontage& block : blocks) block.extent = {block.extent.lo - half, block.extent.hi - half};
   return blocks;
 }
 
@@ -88,14 +96,13 @@ void add_building(MeshBuilder& builder, Random& random, const Lot& lot, double d
   add_stepped_tower(builder, random, lot, storeys);
 }
 
-void add_lots(MeshBuilder& builder, Random& random, const Block& block, double density) {
+void add_lots(MeshBuilder& builder, Random& random, const Frontage& along_x, const Frontage& along_z, double density) {
   const double pavement = 3.5;
-  const auto columns = static_cast<int>(2 + random.below(2)), rows = 2;
-  const double width = (block.hi.x - block.lo.x - 2 * pavement) / columns;
-  const double depth = (block.hi.z - block.lo.z - 2 * pavement) / rows;
-  for (int row = 0; row < rows; ++row)
-    for (int column = 0; column < columns; ++column) {
-      const Vec3d lo{block.lo.x + pavement + column * width, kKerb, block.lo.z + pavement + row * depth};
+  const double width = (along_x.extent.hi - along_x.extent.lo - 2 * pavement) / along_x.lots;
+  const double depth = (along_z.extent.hi - along_z.extent.lo - 2 * pavement) / along_z.lots;
+  for (uint32_t row = 0; row < along_z.lots; ++row)
+    for (uint32_t column = 0; column < along_x.lots; ++column) {
+      const Vec3d lo{along_x.extent.lo + pavement + column * width, kKerb, along_z.extent.lo + pavement + row * depth};
       add_building(builder, random, {lo, lo + Vec3d{width, 0, depth}}, density);
     }
 }
@@ -112,20 +119,20 @@ double density_at(const Block& block, double half_side, uint64_t seed) {
 TriangleMesh make_city(uint32_t size, uint64_t seed) {
   MeshBuilder builder;
   Random layout(seed);
-  const std::vector<Interval> columns = block_intervals(layout, size), rows = block_intervals(layout, size);
-  const double half_x = columns.back().hi + kStreet, half_z = rows.back().hi + kStreet;
-  const double west = columns.front().lo - kAvenue, north = rows.front().lo - kAvenue;
-  builder.quad(Vec3d{west, 0, north}, Vec3d{west, 0, half_z}, Vec3d{half_x, 0, half_z}, Vec3d{half_x, 0, north});
-  for (const Interval& row : rows)
-    for (const Interval& column : columns) {
+  const std::vector<Frontage> columns = make_frontages(layout, size), rows = make_frontages(layout, size);
+  const double east = columns.back().extent.hi + kStreet, south = rows.back().extent.hi + kStreet;
+  const double west = columns.front().extent.lo - kAvenue, north = rows.front().extent.lo - kAvenue;
+  builder.quad(Vec3d{west, 0, north}, Vec3d{west, 0, south}, Vec3d{east, 0, south}, Vec3d{east, 0, north});
+  for (const Frontage& row : rows)
+    for (const Frontage& column : columns) {
       Random random(layout.next());
-      const Block block{{column.lo, 0, row.lo}, {column.hi, kKerb, row.hi}};
+      const Block block{{column.extent.lo, 0, row.extent.lo}, {column.extent.hi, kKerb, row.extent.hi}};
       builder.block(block, kSidesAndTop);
       add_street_furniture(builder, random, block);
       if (random.below(9) == 0)
-        add_park(builder, random, {{column.lo + 3, kKerb, row.lo + 3}, {column.hi - 3, kKerb, row.hi - 3}});
+        add_park(builder, random, {block.lo + Vec3d{3, kKerb, 3}, block.hi - Vec3d{3, 0, 3}});
       else
-        add_lots(builder, random, block, density_at(block, std::max(half_x, half_z), seed));
+        add_lots(builder, random, column, row, density_at(block, std::max(east, south), seed));
     }
   return builder.take();
 }

@@ -68,7 +68,7 @@ struct Expected {
 
 TEST(Procedural, SizesGiveTheDocumentedCounts) {
   const Expected table[] = {
-      {{"city", 0, 1}, 10000, 40000},    {{"city", 7, 1}, 80000, 130000},       {{"city", 22, 1}, 900000, 1200000},
+      {{"city", 0, 1}, 10000, 40000},    {{"city", 15, 1}, 80000, 130000},      {{"city", 48, 1}, 900000, 1200000},
       {{"forest", 0, 1}, 20000, 40000},  {{"forest", 16, 1}, 90000, 120000},    {{"forest", 49, 1}, 900000, 1100000},
       {{"terrain", 0, 1}, 20000, 20000}, {{"terrain", 224, 1}, 100352, 100352}, {{"terrain", 708, 1}, 1002528, 1002528},
       {{"city", 1, 1}, 100, 5000},       {{"forest", 1, 1}, 50, 2000},          {{"terrain", 1, 1}, 2, 2},
@@ -113,7 +113,7 @@ TEST(Procedural, GroundFacesUp) {
 TEST(Procedural, SameOptionsGiveTheSameBytes) {
   // Literal, so that another machine, compiler or library that gives other bytes is found out.
   const std::pair<ProceduralOptions, uint64_t> table[] = {
-      {{"city", 3, 1}, 0},     {{"city", 3, 2}, 0},     {{"forest", 3, 1}, 0},    {{"forest", 3, 2}, 0},
+      {{"city", 5, 1}, 0},     {{"city", 5, 2}, 0},     {{"forest", 3, 1}, 0},    {{"forest", 3, 2}, 0},
       {{"terrain", 40, 1}, 0}, {{"terrain", 40, 2}, 0}, {{"random100", 0, 1}, 0}, {{"random1000", 0, 1}, 0},
   };
   std::set<uint64_t> seen;
@@ -170,7 +170,7 @@ TEST(ParseProcedural, RefusesWithAHint) {
       {"procedural:city?size=", "size is not a whole number"},
       {"procedural:city?size", "size is not a whole number"},
       {"procedural:city?size=99999999999", "size is not a whole number in range"},
-      {"procedural:city?size=71", "Choose 1 to 70"},
+      {"procedural:city?size=151", "Choose 1 to 150"},
       {"procedural:forest?size=151", "Choose 1 to 150"},
       {"procedural:terrain?size=2201", "Choose 1 to 2200"},
       {"procedural:city?sed=4", "Did you mean \"seed\"?"},
