@@ -36,7 +36,8 @@ struct PaperParameters {
 /// Cost of a node that would be a leaf, from its measure and triangle count.
 using NodeCost = std::function<float(float measure, uint32_t count)>;
 
-/// Appends candidate plane positions, ascending, along an axis of the node. `centroids` bounds the node's centroids.
+/// Appends candidate plane positions, ascending, along an axis of the node. `centroids` bounds the node's centroids
+/// (the positions that the partition rule gives, where there is one).
 using CandidatePlanes = std::function<void(const NodeContext&, const Bounds& centroids, int axis, uint32_t bins,
                                            std::vector<float>& planes)>;
 
@@ -73,7 +74,7 @@ struct BuildStrategy {
   RayMeasure measure;            // surface area
   SplitOrientation orientation;  // all_axes_orientation()
   NodeCost cost;                 // measure * count
-  CandidatePlanes planes;        // `bins` equal slices of the node's box
+  CandidatePlanes planes;        // `bins` equal slices of the node's box (build_binned: of the centroids' box)
   PartitionRule partition;       // the centroid's coordinate
   SplitDecision decision;        // decide_split
   StopRule stop;                 // stop_by_parameters
@@ -85,8 +86,11 @@ struct BuildOptions {
   std::optional<BuildStrategy> fallback;  // build_paper only; without one a fallback verdict means kSatisfied
   PaperParameters parameters;
   CostModel costs;
-  bool split_inseparable = true;  // where no candidate plane separates the centroids, cut their own box instead
-  bool merge_leaves = false;      // build_binned: make a leaf of up to `leaf_size` where splitting costs more
+  /// Where no candidate plane separates the centroids, cut their own box along its longest axis instead; more than
+  /// `leaf_size` primitives whose centroids coincide are cut into two halves of their list. Without it such nodes
+  /// become leaves of any size.
+  bool split_inseparable = true;
+  bool merge_leaves = false;  // build_binned: make a leaf of up to `leaf_size` where splitting costs more
   uint32_t leaf_size = 4;
   uint64_t seed = 1;  // of NodeContext::seed
 };
@@ -101,10 +105,10 @@ bool stop_by_parameters(const StopState& state, const PaperParameters& parameter
 /// What happened at one node, parallel to Bvh::nodes.
 struct NodeLog {
   int8_t axis = -1;          // split axis, -1 for leaves
-  uint8_t orientations = 0;  // orientations tried (failed attempts in final leaves count too)
-  bool fallback = false;     // split by the fallback strategy (forced by the decision, or by the level)
-  bool forced = false;       // fallback because of the decision, not of the level
-  float quality = 0;         // of the split axis
+  uint8_t orientations = 0;  // orientations tried, the fallback's too (failed attempts in final leaves count)
+  bool fallback = false;     // split by the fallback strategy (asked by the decision, or by the level)
+  bool forced = false;       // the decision asked for the fallback; the best split so far may still have won
+  float quality = 0;         // of the split axis; 0 for a split that no candidate plane gave (split_inseparable)
   float ratio = kInf;        // (p_left + p_right) / p_node of the split
 };
 
@@ -119,15 +123,21 @@ struct BuildLog {
 };
 
 /// Algorithm 1 of the paper, iterative: orientations in the strategy's order, `bins` slices each, the decision of
-/// figure 9, fallback. `centroids[i]` is the barycentre of primitive i. Throws Error kUsage for parameters out of
-/// range, kBadHeuristic (with the node) for a measure that is negative or not finite or an orientation with a wrong
-/// axis.
+/// figure 9, fallback. Of planes with equal cost the lowest along the first orientation wins; of planes that cost
+/// nothing the one with the most even counts. Every node is judged by the primary measure, or by the fallback's below
+/// max_non_fallback_levels. `centroids[i]` is the barycentre of primitive i; it need not lie in its box.
+///
+/// Deterministic. No primitives give an empty tree. Throws Error kUsage for options out of range, boxes that are empty
+/// or not finite, and centroids that are not finite or not one per box; kBadHeuristic (with the node) for a measure
+/// that is negative or not finite or an orientation with a wrong axis. Exceptions of user functions pass through.
 Bvh build_paper(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                 BuildLog* log = nullptr);
 
 /// Binned top-down construction after Wald, "On fast construction of SAH-based bounding volume hierarchies" (2007): one
 /// pass over the primitives for all axes, prefix and suffix sweeps over the bins, the best plane of all axes that the
-/// orientation strategy names. Bins the box of the centroids. Ignores `fallback` and `decision`. Same errors.
+/// orientation strategy admits: those whose quality reaches split_plane_quality_threshold, or else the best. Bins the
+/// box of the centroids. Of planes with equal cost the one with the most even counts wins. Ignores `fallback` and
+/// `decision`. Same errors.
 Bvh build_binned(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                  BuildLog* log = nullptr);
 

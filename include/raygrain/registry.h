@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -63,8 +64,9 @@ bool needs_area(const Recipe& recipe, const Registry& registry);
 bool needs_samples(const Recipe& recipe, const Registry& registry);
 
 /// Options of the preset `paper`: the recipe's measure and orientation, fallback SAH + LSPH, all thresholds from
-/// recipe.parameters ("+ALL": quality threshold 0 and excellent ratio 0). Throws Error (kUsage) when the recipe needs
-/// an area or samples and there are none.
+/// recipe.parameters ("+ALL": quality threshold 0 and excellent ratio 0); `binned` merges leaves. Throws Error (kUsage)
+/// when the recipe needs an area or samples and there are none, or when its measure cannot serve the area (DIR: only
+/// plane areas).
 BuildOptions make_build_options(const Recipe& recipe, const Registry& registry, const HeuristicInput& input);
 
 /// Builds the recipe's tree.

@@ -37,7 +37,7 @@ class BinnedBuilder {
  private:
   Choice choose(const OpenNode& node, std::span<const uint32_t> prims, NodeLog& note) {
     laps_.lap(&BuildTimes::candidates);
-    const AxisOrder order = strategy_.axes(node.context);
+    const AxisOrder order = admitted_axes(node.context);
     laps_.lap(&BuildTimes::orientations);
     note.orientations = static_cast<uint8_t>(order.count);
     fill_bins(node.context, prims, order);
@@ -50,6 +50,15 @@ class BinnedBuilder {
       best = builder::split_inseparable(input_, prims, strategy_, node.context, options_, bins_[0]);
     if (best && options_.merge_leaves && is_leaf_cheaper(node, best)) return {};
     return best;
+  }
+
+  AxisOrder admitted_axes(const NodeContext& node) const {
+    const AxisOrder order = strategy_.axes(node);
+    AxisOrder admitted;
+    for (size_t i = 0; i < static_cast<size_t>(order.count); ++i)
+      if (i == 0 || order.choices[i].quality >= options_.parameters.split_plane_quality_threshold)
+        admitted.push(order.choices[i]);
+    return admitted;
   }
 
   /// The one pass over the primitives, for all axes.

@@ -62,7 +62,7 @@ void AxisBins::sweep() {
 
 bool AxisBins::is_better(const Candidate& candidate, double cost, const Choice& best, uint32_t count, Tie tie) const {
   if (!best || cost < best.cost) return true;
-  if (tie == Tie::kLowerPlane || cost > best.cost) return false;
+  if (cost > best.cost || (tie == Tie::kLowerPlane && cost > 0)) return false;
   const auto larger_side = [count](uint32_t left) { return std::max(left, count - left); };
   return larger_side(candidate.left_count) < larger_side(best.left_count);
 }

@@ -28,7 +28,7 @@ struct Choice {
 
 /// Which of two planes of equal cost is chosen.
 enum class Tie {
-  kLowerPlane,  // as Algorithm 1
+  kLowerPlane,  // as Algorithm 1; but of planes that cost nothing the more even one, or long chains would come of them
   kMoreEven,    // the one with the more even counts: a measure that sees no difference gives a balanced tree
 };
 

@@ -1,0 +1,173 @@
+#include "raygrain/registry.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "raygrain/error.h"
+
+namespace raygrain {
+
+namespace {
+
+char lower(char c) {
+  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = lower(c);
+  return result;
+}
+
+/// Levenshtein distance.
+size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t{0});
+  for (size_t i = 0; i < a.size(); ++i) {
+    size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (size_t j = 0; j < b.size(); ++j) {
+      const size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({row[j] + 1, diagonal + 1, changed});
+    }
+  }
+  return row.back();
+}
+
+/// "Did you mean PAH? Known: SAH, PAH, ...".
+template <class Entry>
+std::string hint_for(std::string_view name, const std::vector<Entry>& entries) {
+  constexpr size_t kLongestName = 64;  // nothing longer is a slip of the hand
+  const Entry* nearest = nullptr;
+  size_t least = 0;
+  std::string known;
+  for (const Entry& entry : entries) {
+    known += (known.empty() ? "" : ", ") + entry.name;
+    if (name.size() > kLongestName) continue;
+    const size_t distance = edit_distance(lower(name), lower(entry.name));
+    if (nearest && distance >= least) continue;
+    nearest = &entry;
+    least = distance;
+  }
+  return (nearest ? "Did you mean " + nearest->name + "? " : "") + "Known: " + known;
+}
+
+template <class Entry>
+const Entry& find_entry(const std::vector<Entry>& entries, std::string_view name, const char* kind) {
+  const std::string wanted = lower(name);
+  const auto found =
+      std::find_if(entries.begin(), entries.end(), [&](const Entry& entry) { return lower(entry.name) == wanted; });
+  if (found != entries.end()) return *found;
+  throw Error(ErrorCode::kUsage, kind, "unknown name \"" + std::string(name.substr(0, 64)) + "\"",
+              hint_for(name, entries));
+}
+
+RayMeasure make_directional(const HeuristicInput& input) {
+  if (const auto* plane = std::get_if<PlaneArea>(&input.area->shape)) return directional_measure(plane->direction);
+  throw Error(ErrorCode::kUsage, "DIR", "area \"" + input.area->name + "\" is a point area; DIR needs parallel rays",
+              "use PAH, or a plane area");
+}
+
+std::vector<MeasureEntry> default_measures() {
+  return {
+      {"SAH", "surface area: rays from everywhere", false, false,
+       [](const HeuristicInput&) { return surface_area_measure(); }},
+      {"PAH", "projected area, culled to the area's window", true, false,
+       [](const HeuristicInput& input) { return projected_area_measure(*input.area, Culling::kWindow); }},
+      {"PAH-UNCULLED", "projected area, not culled", true, false,
+       [](const HeuristicInput& input) { return projected_area_measure(*input.area, Culling::kNone); }},
+      {"DIR", "projected area along one direction as three face weights", true, false, make_directional},
+      {"SAMPLED", "sample rays that meet the box", false, true,
+       [](const HeuristicInput& input) {
+         return sampled_measure(std::vector<Ray>(input.samples.begin(), input.samples.end()));
+       }},
+  };
+}
+
+std::vector<OrientationEntry> default_orientations() {
+  return {
+      {"LSPH", "longest axis first", false, false, [](const HeuristicInput&) { return longest_axis_orientation(); }},
+      {"SPFH", "the plane that faces the rays least first", true, false,
+       [](const HeuristicInput& input) { return facing_orientation(*input.area); }},
+      {"ALL", "every axis", false, true, [](const HeuristicInput&) { return all_axes_orientation(); }},
+      {"ROBIN", "one axis after the other", false, false,
+       [](const HeuristicInput&) { return round_robin_orientation(); }},
+  };
+}
+
+const MeasureEntry& measure_of(const Recipe& recipe, const Registry& registry) {
+  return find_entry(registry.measures, recipe.measure, "measure");
+}
+const OrientationEntry& orientation_of(const Recipe& recipe, const Registry& registry) {
+  return find_entry(registry.orientations, recipe.orientation, "orientation");
+}
+
+void check_supply(const Recipe& recipe, const Registry& registry, const HeuristicInput& input) {
+  if (needs_area(recipe, registry) && !input.area)
+    throw Error(ErrorCode::kUsage, recipe_name(recipe), "needs an influence area and there is none",
+                "name an area, or use SAH with LSPH or ALL");
+  if (needs_samples(recipe, registry) && input.samples.empty())
+    throw Error(ErrorCode::kUsage, recipe_name(recipe), "needs sample rays and there are none", "give a ray set");
+}
+
+}  // namespace
+
+Registry default_registry() {
+  return {default_measures(),
+          default_orientations(),
+          {{"paper", "Algorithm 1 of the paper", build_paper}, {"binned", "binned top-down, all axes", build_binned}}};
+}
+
+std::string recipe_name(const Recipe& recipe) {
+  const std::string name = recipe.measure + "+" + recipe.orientation;
+  return lower(recipe.builder) == "paper" ? name : name + "@" + recipe.builder;
+}
+
+Recipe parse_recipe(std::string_view text, const Registry& registry) {
+  const size_t at = std::min(text.find('@'), text.size());
+  const std::string_view heuristic = text.substr(0, at);
+  const size_t plus = heuristic.find('+');
+  if (plus == std::string_view::npos)
+    throw Error(ErrorCode::kUsage, "recipe", "\"" + std::string(text.substr(0, 64)) + "\" is no recipe",
+                "write MEASURE+ORIENTATION or MEASURE+ORIENTATION@BUILDER. " + hint_for(heuristic, registry.measures));
+  Recipe recipe;
+  recipe.measure = find_entry(registry.measures, heuristic.substr(0, plus), "measure").name;
+  recipe.orientation = find_entry(registry.orientations, heuristic.substr(plus + 1), "orientation").name;
+  if (at < text.size()) recipe.builder = find_entry(registry.builders, text.substr(at + 1), "builder").name;
+  return recipe;
+}
+
+bool needs_area(const Recipe& recipe, const Registry& registry) {
+  return measure_of(recipe, registry).needs_area || orientation_of(recipe, registry).needs_area;
+}
+
+bool needs_samples(const Recipe& recipe, const Registry& registry) {
+  return measure_of(recipe, registry).needs_samples;
+}
+
+BuildOptions make_build_options(const Recipe& recipe, const Registry& registry, const HeuristicInput& input) {
+  check_supply(recipe, registry, input);
+  const OrientationEntry& orientation = orientation_of(recipe, registry);
+  BuildOptions options;
+  options.strategy.measure = measure_of(recipe, registry).make(input);
+  options.strategy.orientation = orientation.make(input);
+  options.fallback = BuildStrategy{};
+  options.fallback->measure = surface_area_measure();
+  options.fallback->orientation = longest_axis_orientation();
+  options.parameters = recipe.parameters;
+  options.merge_leaves = true;
+  if (orientation.all_axes) {
+    options.parameters.split_plane_quality_threshold = 0;
+    options.parameters.excellent_ratio = 0;
+  }
+  return options;
+}
+
+Bvh build_tree(const Recipe& recipe, const Registry& registry, const HeuristicInput& input,
+               std::span<const Bounds> bounds, std::span<const Vec3> centroids, BuildLog* log) {
+  const BuilderEntry& builder = find_entry(registry.builders, recipe.builder, "builder");
+  return builder.build(bounds, centroids, make_build_options(recipe, registry, input), log);
+}
+
+}  // namespace raygrain
