@@ -63,9 +63,9 @@ std::vector<size_t> parse_header(const Line& line, const std::string& path) {
     const auto meaning = static_cast<size_t>(known - kRayColumns.begin());
     const std::string where = place(path, line.number, column);
     if (known == kRayColumns.end())
-      throw Error(ErrorCode::kMalformed, where, "unknown column " + quoted(field), kHeaderHint);
+      throw Error(ErrorCode::kMalformed, where, "unknown column " + in_quotes(field), kHeaderHint);
     if (std::find(columns.begin(), columns.end(), meaning) != columns.end())
-      throw Error(ErrorCode::kMalformed, where, "column " + quoted(field) + " is there twice", kHeaderHint);
+      throw Error(ErrorCode::kMalformed, where, "column " + in_quotes(field) + " is there twice", kHeaderHint);
     columns.push_back(meaning);
   });
   for (size_t meaning = 0; meaning < kNeededColumns; ++meaning)
@@ -85,7 +85,7 @@ Ray parse_ray(const Line& line, const std::vector<size_t>& columns, const std::s
                   "more fields than the header's " + std::to_string(columns.size()));
     const std::optional<float> value = parse_float(field);
     if (!value)
-      throw Error(ErrorCode::kMalformed, place(path, line.number, column), quoted(shown) + " is not a number",
+      throw Error(ErrorCode::kMalformed, place(path, line.number, column), in_quotes(shown) + " is not a number",
                   "numbers look like 1.5, -2e-3, inf or nan");
     values[columns[count++]] = *value;
   });

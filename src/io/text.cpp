@@ -87,7 +87,7 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
   std::string result = "\"";
   for (const char symbol : text.substr(0, 40)) result += symbol >= ' ' && symbol <= '~' ? symbol : '?';
   return result + (text.size() > 40 ? "...\"" : "\"");

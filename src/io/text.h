@@ -22,7 +22,7 @@ constexpr bool is_blank(char symbol) {
 std::string_view trimmed(std::string_view text);
 
 /// `text` made fit to be shown in a message: at most 40 bytes, control characters and broken bytes replaced.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 /// "file:line:column" or "file:line".
 std::string place(const std::string& path, size_t line, size_t column = 0);
