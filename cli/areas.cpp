@@ -1,0 +1,103 @@
+#include "cli/areas.h"
+
+#include <fmt/format.h>
+
+#include "raygrain/accelerator.h"
+#include "raygrain/error.h"
+#include "raygrain/io.h"
+
+#include "cli/values.h"
+
+namespace raygrain::cli {
+
+namespace {
+
+constexpr float kDefaultFieldOfView = 60, kDefaultAspect = 1.5f;
+constexpr float kWidestAspect = 100;
+
+/// Values of an option are the user's words: what is wrong with them is a matter of usage, named after the option.
+template <class Make>
+auto from_option(const std::string& option, const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (error.code != ErrorCode::kBadArea) throw;
+    throw Error(ErrorCode::kUsage, option, error.message, error.hint);
+  }
+}
+
+void check_sun(Vec3 direction) {
+  if (direction == Vec3{})
+    fail_usage("--sun", "0,0,0 is no direction",
+               "Give the direction in which the light travels, e.g. --sun 0.3,-0.8,0.5");
+}
+
+void check_camera(const std::pair<Vec3, Vec3>& camera) {
+  if (camera.first == camera.second)
+    fail_usage("--camera", "the eye and the target are the same point", "Move one of them");
+}
+
+std::vector<InfluenceArea> with_triangles(std::vector<InfluenceArea> areas, const Scene& scene, const Output& output) {
+  std::string dropped;
+  std::erase_if(areas, [&](const InfluenceArea& area) {
+    if (!area_members(scene.mesh, AreaGeometry(area)).empty()) return false;
+    dropped += (dropped.empty() ? "" : ", ") + area.name;
+    return true;
+  });
+  if (!dropped.empty()) output.note(fmt::format("Left out, as no triangle lies there: {}\n", dropped));
+  return areas;
+}
+
+}  // namespace
+
+void add_area_options(Arguments& arguments, AreaOptions& options) {
+  arguments.group("Influence areas (without any: the scene's own)");
+  arguments.text("--areas", "FILE.json", options.file, "Areas of a JSON file with \"areas\", or of a scene.json");
+  arguments.vector("--sun", options.sun,
+                   "Parallel light over the whole scene; X,Y,Z is the direction in which it travels");
+  arguments.vector("--light", options.light, "A light at this point: six frusta of 90 degrees around it");
+  arguments.two_vectors("--camera", "EYE TARGET", options.camera, "A camera: two points X,Y,Z");
+  arguments.real("--fov", "DEGREES", options.field_of_view, {0.0f, 180.0f}, "Vertical field of view of --camera [60]");
+  arguments.real("--aspect", "RATIO", options.aspect, {1 / kWidestAspect, kWidestAspect},
+                 "Width by height of --camera [1.5]");
+}
+
+void check_area_options(const AreaOptions& options) {
+  const std::pair<bool, const char*> kinds[] = {{!options.file.empty(), "--areas"},
+                                                {options.sun.has_value(), "--sun"},
+                                                {options.light.has_value(), "--light"},
+                                                {options.camera.has_value(), "--camera"}};
+  const char* first = nullptr;
+  for (const auto& [given, option] : kinds) {
+    if (!given) continue;
+    if (first) fail_usage(option, fmt::format("cannot be combined with {}", first), "Leave one of them out");
+    first = option;
+  }
+  if (!options.camera && (options.field_of_view || options.aspect))
+    fail_usage(options.field_of_view ? "--fov" : "--aspect", "is only for --camera", "Add --camera EYE TARGET");
+  if (options.sun) check_sun(*options.sun);
+  if (options.camera) check_camera(*options.camera);
+}
+
+std::vector<InfluenceArea> choose_areas(const AreaOptions& options, const Scene& scene, const Output& output) {
+  const Bounds box = mesh_bounds(scene.mesh);
+  if (!options.file.empty()) return load_areas(options.file);
+  if (options.sun)
+    return from_option("--sun", [&] { return std::vector{directional_light_area("sun", *options.sun, box)}; });
+  if (options.light)
+    return from_option("--light",
+                       [&] { return with_triangles(point_light_areas("light", *options.light, box), scene, output); });
+  if (!options.camera) return scene.areas;
+  return from_option("--camera", [&] {
+    const auto& [eye, target] = *options.camera;
+    return std::vector{camera_area("camera", eye, target, options.field_of_view.value_or(kDefaultFieldOfView),
+                                   options.aspect.value_or(kDefaultAspect), box)};
+  });
+}
+
+void fail_without_areas(const std::string& scene) {
+  fail_usage(scene, "has no influence areas of its own",
+             "Add --sun X,Y,Z (direction of the light), --light X,Y,Z, --camera EYE TARGET or --areas FILE.json");
+}
+
+}  // namespace raygrain::cli

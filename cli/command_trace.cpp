@@ -1,0 +1,199 @@
+// raygrain trace: the nearest hits of given rays, through local trees and the global one.
+#include <algorithm>
+#include <memory>
+#include <mutex>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "raygrain/accelerator.h"
+#include "raygrain/error.h"
+#include "raygrain/io.h"
+#include "raygrain/report.h"
+
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "cli/areas.h"
+#include "cli/commands.h"
+#include "cli/open_scene.h"
+#include "cli/values.h"
+#include "io/nearest_name.h"
+
+namespace raygrain::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr size_t kChunk = 1024;  // rays that one thread takes at a time
+constexpr size_t kSampleRays = 1000;
+
+struct Options {
+  CommonOptions common;
+  AreaOptions areas;
+  std::string scene, rays, set, output;
+  std::string local = "PAH+ALL@binned", global = "SAH+ALL@binned";
+  bool verify = false;
+};
+
+struct Traced {
+  std::vector<Hit> hits;
+  AcceleratorCounters counters;
+  size_t hit_count = 0, mismatches = 0;
+  double seconds = 0;
+};
+
+AcceleratorOptions accelerator_options(const Options& options) {
+  AcceleratorOptions result;
+  result.local = parse_recipe(options.local, result.registry);
+  result.global = parse_recipe(options.global, result.registry);
+  result.threads = options.common.thread_count();
+  result.samples = [](const InfluenceArea* area) {
+    return area ? cast_rays(AreaRays{.area = *area}, kSampleRays, 1) : std::vector<Ray>{};
+  };
+  return result;
+}
+
+std::vector<Ray> rays_of_set(const Scene& scene, const std::string& name) {
+  std::vector<std::string_view> names;
+  for (const RaySet& set : scene.ray_sets) {
+    if (set.name == name) return make_rays(set, scene.mesh);
+    names.push_back(set.name);
+  }
+  fail_usage("--set", "the scene has no rays '" + name + "'",
+             names.empty() ? "It has no ray sets: use --rays FILE.csv" : suggestion(name, names));
+}
+
+/// In large pieces, so that progress can be told between them.
+Traced trace_all(const Accelerator& accelerator, std::span<const Ray> rays, unsigned threads, Progress& progress) {
+  constexpr size_t kPiece = 64 * kChunk;
+  Traced traced;
+  traced.hits.resize(rays.size());
+  std::mutex mutex;
+  const Timer timer;
+  for (size_t start = 0; start < rays.size(); start += kPiece) {
+    progress.show("trace rays", static_cast<double>(start) / static_cast<double>(rays.size()));
+    parallel_for(std::min(kPiece, rays.size() - start), kChunk, threads, [&](size_t begin, size_t end) {
+      AcceleratorCounters counters;
+      for (size_t i = start + begin; i < start + end; ++i) traced.hits[i] = accelerator.intersect(rays[i], &counters);
+      const std::lock_guard lock(mutex);
+      traced.counters.add(counters);
+    });
+  }
+  traced.seconds = timer.seconds();
+  for (const Hit& hit : traced.hits) traced.hit_count += is_hit(hit) ? 1 : 0;
+  return traced;
+}
+
+size_t count_wrong(const TriangleMesh& mesh, std::span<const Ray> rays, std::span<const Hit> hits, unsigned threads) {
+  std::vector<uint8_t> wrong(rays.size());
+  parallel_for(rays.size(), 64, threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) wrong[i] = intersect_reference(mesh, rays[i]) != hits[i];
+  });
+  return static_cast<size_t>(std::count(wrong.begin(), wrong.end(), 1));
+}
+
+Json work(const TraceCounters& c) {
+  return {{"inner_hits", c.inner_hits},
+          {"leaf_hits", c.leaf_hits},
+          {"leaf_triangles", c.leaf_triangles},
+          {"box_tests", c.box_tests},
+          {"triangle_tests", c.triangle_tests}};
+}
+
+std::string trace_json(const Options& options, const Scene& scene, const Traced& traced) {
+  const Environment environment = current_environment(options.common.thread_count());
+  const AcceleratorCounters& c = traced.counters;
+  Json report{{"scene", scene.name},
+              {"triangles", scene.mesh.triangle_count()},
+              {"environment",
+               {{"commit", environment.commit},
+                {"compiler", environment.compiler},
+                {"cpu", environment.cpu},
+                {"threads", environment.threads}}},
+              {"rays", traced.hits.size()},
+              {"hits", traced.hit_count},
+              {"trace_seconds", traced.seconds},
+              {"counters",
+               {{"invalid_rays", c.invalid_rays},
+                {"areas_tested", c.areas_tested},
+                {"areas_serving", c.areas_serving},
+                {"local_searches", c.local_searches},
+                {"local_hits", c.local_hits},
+                {"continued", c.continued},
+                {"global_searches", c.global_searches},
+                {"local", work(c.local)},
+                {"global", work(c.global)}}}};
+  if (options.verify) report["mismatches"] = traced.mismatches;
+  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string trace_text(const Options& options, const Scene& scene, size_t areas, const Traced& traced) {
+  const AcceleratorCounters& c = traced.counters;
+  std::string text = fmt::format("{}: {} triangles, {} areas\n", scene.name, scene.mesh.triangle_count(), areas);
+  const auto line = [&](const char* name, uint64_t value) { text += fmt::format("  {:<36} {:>12}\n", name, value); };
+  line("rays", traced.hits.size());
+  line("hits", traced.hit_count);
+  line("invalid rays (misses)", c.invalid_rays);
+  line("areas asked", c.areas_tested);
+  line("areas that serve", c.areas_serving);
+  line("searches of local trees", c.local_searches);
+  line("hits accepted from local trees", c.local_hits);
+  line("searches that went on in a next area", c.continued);
+  line("searches of the global tree", c.global_searches);
+  line("boxes tested", c.local.box_tests + c.global.box_tests);
+  line("triangles tested", c.local.triangle_tests + c.global.triangle_tests);
+  if (options.verify) line("differences from brute force", traced.mismatches);
+  return text;
+}
+
+void check_options(const Options& options) {
+  check_area_options(options.areas);
+  if (options.rays.empty() == options.set.empty())
+    fail_usage("--rays", options.rays.empty() ? "no rays are given" : "cannot be combined with --set",
+               "Give --rays FILE.csv (columns ox,oy,oz,dx,dy,dz[,tmin,tmax]) or --set NAME of a scene.json");
+}
+
+int trace(const Options& options) {
+  check_options(options);
+  const AcceleratorOptions build = accelerator_options(options);
+  const Output output(options.common);
+  require_writable(options.output);
+  Progress progress(!options.common.quiet);
+  const Scene scene = open_scene(options.scene, progress);
+  const std::vector<InfluenceArea> areas = choose_areas(options.areas, scene, output);
+  const std::vector<Ray> rays = options.rays.empty() ? rays_of_set(scene, options.set) : load_rays(options.rays);
+
+  const Accelerator accelerator(scene.mesh, areas, build);
+  const unsigned threads = options.common.thread_count();
+  Traced traced = trace_all(accelerator, rays, threads, progress);
+  if (options.verify) traced.mismatches = count_wrong(scene.mesh, rays, traced.hits, threads);
+  save_hits(traced.hits, options.output);
+  progress.erase();
+  output.save_json(trace_json(options, scene, traced));
+  output.print(trace_text(options, scene, areas.size(), traced));
+  output.note("Written:\n  " + options.output + "\n");
+  if (traced.mismatches == 0) return kSuccess;
+  throw Error(ErrorCode::kLimit, options.output, fmt::format("{} rays GOT WRONG HITS", traced.mismatches),
+              "This is a defect of raygrain: do not use these results, and please report it");
+}
+
+}  // namespace
+
+Action declare_trace(Arguments& arguments) {
+  const auto options = std::make_shared<Options>();
+  arguments.operand("SCENE", options->scene, kSceneHelp);
+  arguments.text("--rays", "FILE.csv", options->rays, "Rays: columns ox,oy,oz,dx,dy,dz and optional tmin,tmax");
+  arguments.text("--set", "NAME", options->set, "Rays of this ray set of a scene.json");
+  arguments.required_text("-o,--output", "HITS.csv", options->output,
+                          "Hits: columns t,u,v,triangle; a miss is inf,0,0,-1");
+  add_area_options(arguments, options->areas);
+  arguments.group("Trees");
+  arguments.text("--local", "RECIPE", options->local, "Recipe of each area's tree [PAH+ALL@binned]");
+  arguments.text("--global", "RECIPE", options->global, "Recipe of the tree for all other rays [SAH+ALL@binned]");
+  arguments.flag("--verify", options->verify, "Check every hit against brute force (slow)");
+  add_common(arguments, options->common);
+  return [options] { return trace(*options); };
+}
+
+}  // namespace raygrain::cli

@@ -1,0 +1,189 @@
+// raygrain: one program, a command for each job. Exit codes: 0 success, 1 bad data or a failed write, 2 bad usage.
+#include <algorithm>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <unistd.h>
+
+#include "raygrain/error.h"
+#include "raygrain/report.h"
+
+#include "cli/arguments.h"
+#include "cli/commands.h"
+#include "cli/output.h"
+#include "cli/signals.h"
+#include "cli/values.h"
+#include "io/nearest_name.h"
+
+namespace raygrain::cli {
+namespace {
+
+constexpr int kReaderGone = 128 + 13;  // what a shell reports for a program that SIGPIPE ended
+
+struct Command {
+  const char* name;
+  const char* help;
+  Action (*declare)(Arguments&);
+};
+
+constexpr Command kCommands[] = {
+    {"compare", "Compare trees of several recipes for the same areas and rays: the main job", declare_compare},
+    {"build", "Build one tree and write it as JSON", declare_build},
+    {"analyze", "Print all metrics of one tree", declare_analyze},
+    {"trace", "Find the nearest hits of rays from a file", declare_trace},
+    {"recipes", "List the measures, orientations and builders that recipes are made of", declare_recipes},
+};
+constexpr Command kSceneCommands[] = {
+    {"generate", "Make a procedural scene", declare_generate},
+    {"convert", "Write a scene in another format", declare_convert},
+    {"info", "Say what a scene holds", declare_info},
+};
+
+void add_command(Arguments& parent, const Command& command, Action& chosen) {
+  Arguments arguments = parent.command(command.name, command.help);
+  arguments.action([&chosen, action = command.declare(arguments)] { chosen = action; });
+}
+
+std::string one_line(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < ' ' || c == 0x7f) c = ' ';
+  return text;
+}
+
+/// What helps in general, where nothing better is known.
+std::string default_hint(ErrorCode code) {
+  switch (code) {
+    case ErrorCode::kUsage:
+      return "See raygrain --help";
+    case ErrorCode::kNotFound:
+      return "Check the name";
+    case ErrorCode::kUnreadable:
+      return "Check that it is a file that you may read";
+    case ErrorCode::kUnwritable:
+      return "Choose another place or free some space";
+    case ErrorCode::kLimit:
+      return "Use a smaller scene or raise the limit";
+    default:
+      return "Check the file in the program that made it";
+  }
+}
+
+int fail(const Error& error) {
+  std::string message = error.message, hint = error.hint.empty() ? default_hint(error.code) : error.hint;
+  while (message.ends_with('.') || message.ends_with(' ')) message.pop_back();
+  if (hint[0] >= 'a' && hint[0] <= 'z') hint[0] = static_cast<char>(hint[0] - 'a' + 'A');
+  const std::string line = one_line("raygrain: error: " + error.where + ": " + message + ". " + hint) + "\n";
+  const ssize_t ignored = ::write(STDERR_FILENO, line.data(), line.size());
+  static_cast<void>(ignored);
+  return error.code == ErrorCode::kUsage ? kBadUsage : kBadData;
+}
+
+/// The command that was being read when parsing ended.
+const CLI::App* deepest(const CLI::App& program) {
+  const CLI::App* app = &program;
+  while (!app->get_subcommands().empty()) app = app->get_subcommands().front();
+  return app;
+}
+
+std::string full_name(const CLI::App& app) {
+  return app.get_parent() ? full_name(*app.get_parent()) + " " + app.get_name() : app.get_name();
+}
+
+std::vector<std::string> known_words(const CLI::App& app, bool options) {
+  std::vector<std::string> words;
+  if (options)
+    for (const CLI::Option* option : app.get_options())
+      for (const std::string& name : option->get_lnames()) words.push_back("--" + name);
+  else
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+      words.push_back(command->get_name());
+  return words;
+}
+
+/// A word that nothing expects: an option or a command that is not known, or too many operands.
+Error unexpected_word(const CLI::App& app, const std::string& word) {
+  const bool option = word.starts_with('-');
+  const std::vector<std::string> words = known_words(app, option);
+  const std::vector<std::string_view> names(words.begin(), words.end());
+  const std::string_view near = nearest_name(option ? word.substr(0, word.find('=')) : word, names);
+  const std::string hint = near.empty() ? "" : "Did you mean " + std::string(near) + "? ";
+  const char* what = option ? "is no option here" : (words.empty() ? "is one operand too many" : "is no command");
+  return Error(ErrorCode::kUsage, word, what, hint + "See " + full_name(app) + " --help");
+}
+
+Error usage_error(const CLI::App& program, const CLI::ParseError& error) {
+  const CLI::App& app = *deepest(program);
+  // A word that nothing expects is the likelier mistake than what it leaves missing.
+  for (const CLI::App* level = &app; level; level = level->get_parent())
+    if (const std::vector<std::string> extras = level->remaining(); !extras.empty())
+      return unexpected_word(*level, extras.front());
+  std::string what = error.what();
+  if (what == "A subcommand is required") what = "a command is required";
+  return Error(ErrorCode::kUsage, full_name(app), what, "See " + full_name(app) + " --help");
+}
+
+std::string version() {
+  const Environment environment = current_environment(1);
+  return "raygrain " RAYGRAIN_VERSION " (" + environment.commit + ", " + environment.compiler + ")\n";
+}
+
+int run(int argument_count, char** arguments) {
+  CLI::App program("Ray-tracing structures specialised to known rays: built, compared, and exact for every ray.",
+                   "raygrain");
+  bool show_version = false;
+  program.add_flag("--version", show_version, "Print the version and exit");
+  program.get_formatter()->column_width(34);
+
+  Action chosen;
+  Arguments top(program);
+  for (const Command& command : kCommands) add_command(top, command, chosen);
+  Arguments scene = top.command("scene", "Make, convert and describe scenes");
+  for (const Command& command : kSceneCommands) add_command(scene, command, chosen);
+  top.footer(
+      "First steps:\n"
+      "  raygrain compare 'procedural:city?size=8' --out result\n"
+      "  raygrain compare model.obj --sun 0.35,-0.8,0.48 --out result\n"
+      "Exit codes: 0 success, 1 bad data or a failed write, 2 bad usage.");
+  program.require_subcommand(0, 1);
+
+  try {
+    program.parse(argument_count, arguments);
+  } catch (const CLI::CallForHelp&) {
+    write_standard_output(deepest(program)->help("", CLI::AppFormatMode::Normal));
+    return kSuccess;
+  } catch (const CLI::ParseError& error) {
+    throw usage_error(program, error);
+  }
+  if (show_version) {
+    write_standard_output(version());
+    return kSuccess;
+  }
+  if (!chosen) fail_usage("raygrain", "a command is required", "See raygrain --help");
+  return chosen();
+}
+
+int run_safely(int argument_count, char** arguments) {
+  try {
+    return run(argument_count, arguments);
+  } catch (const ReaderGone&) {
+    return kReaderGone;
+  } catch (const Error& error) {
+    return fail(error);
+  } catch (const std::bad_alloc&) {
+    return fail(Error(ErrorCode::kLimit, "memory", "there is not enough of it", "Use a smaller scene or fewer rays"));
+  } catch (const std::exception& error) {
+    return fail(Error(ErrorCode::kLimit, "internal", error.what(), "This is a defect of raygrain: please report it"));
+  }
+}
+
+}  // namespace
+}  // namespace raygrain::cli
+
+int main(int argument_count, char** arguments) {
+  raygrain::cli::install_signal_handlers();
+  return raygrain::cli::run_safely(argument_count, arguments);
+}

@@ -1,0 +1,102 @@
+#include "cli/one_tree.h"
+
+#include <algorithm>
+
+#include "raygrain/analyze.h"
+#include "raygrain/rays.h"
+
+#include "base/timer.h"
+#include "cli/values.h"
+#include "io/nearest_name.h"
+
+namespace raygrain::cli {
+
+namespace {
+
+constexpr size_t kSampleRays = 1000;
+constexpr uint64_t kSampleSeed = 0x5a3;  // mixed into the seed, so that a tree is never measured with its own samples
+
+std::string known_names(std::span<const InfluenceArea> areas, const std::string& wanted) {
+  std::vector<std::string_view> names;
+  for (const InfluenceArea& area : areas) names.push_back(area.name);
+  return suggestion(wanted, names);
+}
+
+std::optional<InfluenceArea> pick_area(const TreeOptions& options, std::span<const InfluenceArea> areas, bool needed) {
+  if (options.whole) {
+    if (needed) fail_usage("--recipe", "'" + options.recipe + "' needs an area", "Leave out --whole");
+    return std::nullopt;
+  }
+  if (options.area.empty()) {
+    if (areas.size() > 1)
+      fail_usage("--area", "the scene has several areas and none is named", known_names(areas, "") + ", or --whole");
+    if (areas.empty() && needed) fail_without_areas(options.scene);
+    return areas.empty() ? std::nullopt : std::optional(areas[0]);
+  }
+  for (const InfluenceArea& area : areas)
+    if (area.name == options.area) return area;
+  if (areas.empty()) fail_without_areas(options.scene);
+  fail_usage("--area", "there is no area '" + options.area + "'", known_names(areas, options.area));
+}
+
+}  // namespace
+
+void add_tree_options(Arguments& arguments, TreeOptions& options) {
+  arguments.operand("SCENE", options.scene, kSceneHelp);
+  arguments.required_text("--recipe", "NAME", options.recipe,
+                          "What the tree is made by, e.g. PAH+ALL; 'raygrain recipes' lists all");
+  add_area_options(arguments, options.areas);
+  arguments.text("--area", "NAME", options.area, "Which area, where there are several");
+  arguments.flag("--whole", options.whole, "The tree of the whole scene, of no area");
+  arguments.group("Tree");
+  arguments.whole("--seed", options.seed, {}, "Of all rays");
+}
+
+RayMeasure OneTree::measure() const {
+  return make_build_options(recipe, registry, {area ? &*area : nullptr, samples}).strategy.measure;
+}
+
+ReportRow OneTree::row() const {
+  const TreeStats stats = analyze(*tree, measure());
+  const BuildStats build = analyze_build(*tree, log);
+  OverlapStats overlap;
+  if (area) overlap = analyze_overlap(*tree, AreaGeometry(*area));
+  ReportRow result{recipe_name(recipe), area ? area->name : "",
+                   collect_fields(stats, area ? &overlap : nullptr, &build, nullptr, nullptr)};
+  if (!result.values.has(FieldId::kBuildSeconds)) result.values[FieldId::kBuildSeconds] = seconds;
+  return result;
+}
+
+Recipe check_tree_options(const TreeOptions& options, const Registry& registry) {
+  check_area_options(options.areas);
+  if (options.whole && !options.area.empty())
+    fail_usage("--whole", "cannot be combined with --area", "Leave one of them out");
+  return parse_recipe(options.recipe, registry);
+}
+
+OneTree build_one_tree(const TreeOptions& options, const Scene& scene, const std::vector<InfluenceArea>& areas,
+                       Progress& progress) {
+  OneTree result;
+  result.registry = default_registry();
+  result.recipe = parse_recipe(options.recipe, result.registry);
+  const bool samples = needs_samples(result.recipe, result.registry);
+  result.area = pick_area(options, areas, samples || needs_area(result.recipe, result.registry));
+  if (samples) result.samples = cast_rays(AreaRays{.area = *result.area}, kSampleRays, options.seed ^ kSampleSeed);
+
+  constexpr size_t kSlowToBuild = 200'000;  // triangles; takes about a second
+  if (scene.mesh.triangle_count() > kSlowToBuild) progress.announce("building " + recipe_name(result.recipe));
+  const Timer timer;
+  if (result.area) {
+    LocalTree local = build_local_tree(scene.mesh, *result.area, result.recipe, result.registry, {}, result.samples);
+    result.tree = local.tree;
+    result.log = std::move(local.log);
+  } else {
+    result.tree =
+        std::make_shared<const Bvh>(build_global_tree(scene.mesh, result.recipe, result.registry, &result.log));
+  }
+  result.seconds = timer.seconds();
+  progress.erase();
+  return result;
+}
+
+}  // namespace raygrain::cli
