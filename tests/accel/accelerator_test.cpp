@@ -1,0 +1,237 @@
+// The facade: parts, errors, determinism, sharing.
+#include "raygrain/accelerator.h"
+
+#include <algorithm>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "raygrain/error.h"
+#include "raygrain/rays.h"
+
+#include "accel/estimate.h"
+#include "accel/scenes.h"
+#include "base/parallel.h"
+#include "base/random.h"
+
+namespace raygrain {
+namespace {
+
+using test::add_floor;
+using test::add_triangle;
+using test::z_area;
+
+TriangleMesh random_mesh(size_t count, uint64_t seed) {
+  Random random(seed);
+  const auto vector = [&](double half_size) {
+    const double x = random.uniform(-half_size, half_size), y = random.uniform(-half_size, half_size);
+    return Vec3d{x, y, random.uniform(-half_size, half_size)};
+  };
+  TriangleMesh mesh;
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3d a = vector(2);
+    add_triangle(mesh, to_float(a), to_float(a + vector(0.5)), to_float(a + vector(0.5)));
+  }
+  return mesh;
+}
+
+std::vector<InfluenceArea> some_areas() {
+  return {z_area("sun", -1, 2),
+          {"lamp", PointArea{{0.5f, 3, 0.25f}, {0, -1, 0}, {0, 1, 0}, 90, 60, 0.2f, 6}},
+          {"corner", PlaneArea{{2, 2, 2}, {-1, -1, -1}, {0, 0, 1}, 0.7f, 0.7f, 3}}};
+}
+
+template <class Action>
+Error error_of(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error;
+  }
+  ADD_FAILURE() << "no error";
+  return Error(ErrorCode::kCancelled, "", "");
+}
+
+bool same_tree(const Bvh& a, const Bvh& b) {
+  return a.prims == b.prims && std::ranges::equal(a.nodes, b.nodes, [](const Bvh::Node& x, const Bvh::Node& y) {
+           return x.bounds == y.bounds && x.first == y.first && x.count == y.count;
+         });
+}
+
+TEST(Accelerator, MembersAreTheTrianglesThatOverlap) {
+  const TriangleMesh mesh = random_mesh(300, 1);
+  for (const InfluenceArea& area : some_areas()) {
+    SCOPED_TRACE(area.name);
+    const AreaGeometry geometry(area);
+    const std::vector<uint32_t> members = area_members(mesh, geometry);
+    std::vector<uint32_t> expected;
+    for (uint32_t i = 0; i < mesh.triangle_count(); ++i)
+      if (overlaps(geometry.region(), mesh.vertex(i, 0), mesh.vertex(i, 1), mesh.vertex(i, 2))) expected.push_back(i);
+    EXPECT_EQ(members, expected);
+    EXPECT_GT(members.size(), 0u);
+    EXPECT_LT(members.size(), mesh.triangle_count());
+
+    const LocalTree local = build_local_tree(mesh, area, {"PAH", "ALL", "paper", {}}, default_registry());
+    std::vector<uint32_t> held = local.tree->prims;
+    std::ranges::sort(held);
+    EXPECT_EQ(held, members);
+    EXPECT_EQ(find_defect(*local.tree, triangle_bounds(mesh), members), std::nullopt);
+    EXPECT_EQ(local.log.nodes.size(), local.tree->nodes.size());
+  }
+}
+
+TEST(Accelerator, MembershipIsInjectable) {
+  const TriangleMesh mesh = random_mesh(50, 2);
+  const AreaGeometry geometry(z_area("sun", -2, 4));
+  size_t asked = 0;
+  const MembershipRule rule = [&](const AreaGeometry& area, Vec3 a, Vec3, Vec3) {
+    ++asked;
+    EXPECT_EQ(area.area().name, "sun");
+    return a.x > 0;
+  };
+  const std::vector<uint32_t> members = area_members(mesh, geometry, rule);
+  EXPECT_EQ(asked, 50u);
+  for (uint32_t i = 0; i < 50; ++i) EXPECT_EQ(std::ranges::binary_search(members, i), mesh.vertex(i, 0).x > 0);
+}
+
+TEST(Accelerator, PredictedCostIsPricedUnderTheTreesOwnMeasure) {
+  const TriangleMesh mesh = random_mesh(200, 3);
+  const Registry registry = default_registry();
+  for (const InfluenceArea& area : some_areas())
+    for (const char* name : {"PAH+ALL", "SAH+LSPH", "PAH+SPFH@binned"}) {
+      SCOPED_TRACE(area.name + " " + name);
+      const Recipe recipe = parse_recipe(name, registry);
+      const LocalTree local = build_local_tree(mesh, area, recipe, registry);
+      const BuildOptions options = make_build_options(recipe, registry, {&area, {}});
+      EXPECT_GT(local.predicted_cost, 0);
+      EXPECT_EQ(local.predicted_cost, estimated_cost(*local.tree, options.strategy.measure, options.costs));
+    }
+}
+
+TEST(Accelerator, ThreadsDoNotChangeTheTrees) {
+  const TriangleMesh mesh = random_mesh(500, 4);
+  AcceleratorOptions options;
+  options.threads = 1;
+  const Accelerator one(mesh, some_areas(), options);
+  for (const unsigned threads : {2u, 4u, 0u}) {
+    options.threads = threads;
+    const Accelerator many(mesh, some_areas(), options);
+    EXPECT_TRUE(same_tree(one.global_tree(), many.global_tree()));
+    ASSERT_EQ(one.local_trees().size(), many.local_trees().size());
+    for (size_t i = 0; i < 3; ++i) {
+      EXPECT_TRUE(same_tree(*one.local_trees()[i].tree, *many.local_trees()[i].tree));
+      EXPECT_EQ(one.local_trees()[i].predicted_cost, many.local_trees()[i].predicted_cost);
+      EXPECT_EQ(one.local_trees()[i].area.name, many.local_trees()[i].area.name);
+    }
+  }
+}
+
+TEST(Accelerator, ManyThreadsMayAskAtOnce) {
+  const Accelerator scene(random_mesh(300, 5), some_areas());
+  std::vector<Ray> rays;
+  for (const InfluenceArea& area : some_areas())
+    for (const Ray& ray : cast_rays(AreaRays{area, RayStart::kRandomDepth}, 300, 7)) rays.push_back(ray);
+  std::vector<Hit> hits(rays.size());
+  std::vector<AcceleratorCounters> counters(rays.size());
+  parallel_for(rays.size(), 16, 4, [&](size_t begin, size_t end) {
+    const Accelerator copy = scene;
+    for (size_t i = begin; i < end; ++i) hits[i] = copy.intersect(rays[i], &counters[i]);
+  });
+  AcceleratorCounters sum, expected;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    ASSERT_EQ(hits[i], intersect_reference(scene.mesh(), rays[i]));
+    scene.intersect(rays[i], &expected);
+    sum.add(counters[i]);
+  }
+  EXPECT_EQ(sum, expected);
+  EXPECT_EQ(sum.rays, rays.size());
+  EXPECT_GT(sum.local.box_tests, 0u);
+}
+
+TEST(Accelerator, PartsMayBeShared) {
+  const auto mesh = std::make_shared<const TriangleMesh>(random_mesh(100, 6));
+  const Registry registry = default_registry();
+  const auto global = std::make_shared<const Bvh>(build_global_tree(*mesh, {"SAH", "ALL", "binned", {}}, registry));
+  std::vector<LocalTree> locals;
+  for (const InfluenceArea& area : some_areas())
+    locals.push_back(build_local_tree(*mesh, area, {"PAH", "ALL", "paper", {}}, registry));
+  const Accelerator list(mesh, locals, global, {TopLevelKind::kList}), octree(mesh, locals, global);
+  EXPECT_EQ(&list.mesh(), mesh.get());
+  EXPECT_EQ(&octree.global_tree(), global.get());
+  EXPECT_EQ(list.local_trees()[1].tree.get(), octree.local_trees()[1].tree.get());
+  EXPECT_EQ(list.top_level().kind(), TopLevelKind::kList);
+  EXPECT_EQ(octree.top_level().kind(), TopLevelKind::kOctree);
+  EXPECT_GT(octree.memory_bytes(), memory_bytes(*global) + octree.top_level().memory_bytes());
+  for (const Ray& ray : cast_rays(AreaRays{some_areas()[0]}, 200, 1))
+    ASSERT_EQ(list.intersect(ray), octree.intersect(ray));
+}
+
+TEST(Accelerator, WorksWithoutAreasAndWithoutTriangles) {
+  const Accelerator no_areas(random_mesh(20, 7));
+  AcceleratorCounters counters;
+  const Ray ray{{0, 0, -5}, {0.1f, 0, 1}};
+  EXPECT_EQ(no_areas.intersect(ray, &counters), intersect_reference(no_areas.mesh(), ray));
+  EXPECT_EQ(counters.global_searches, 1u);
+  const Accelerator empty(TriangleMesh{}, some_areas());
+  EXPECT_FALSE(is_hit(empty.intersect(ray)));
+  EXPECT_FALSE(is_hit(empty.intersect({{0, 0, -1}, {0, 0, 1}})));
+  EXPECT_FALSE(empty.occluded({{0, 0, -1}, {0, 0, 1}}));
+}
+
+TEST(Accelerator, SampleRaysReachTheirMeasures) {
+  AcceleratorOptions options;
+  options.local = {"SAMPLED", "ALL", "binned", {}};
+  const Error missing = error_of([&] { Accelerator(random_mesh(20, 8), some_areas(), options); });
+  EXPECT_EQ(missing.code, ErrorCode::kUsage);
+  options.samples = [](const InfluenceArea* area) {
+    return area != nullptr ? cast_rays(AreaRays{*area}, 200, 1) : std::vector<Ray>{};
+  };
+  const Accelerator scene(random_mesh(100, 8), some_areas(), options);
+  for (const LocalTree& local : scene.local_trees()) EXPECT_GT(local.predicted_cost, 0);
+  for (const Ray& ray : cast_rays(AreaRays{some_areas()[1]}, 200, 2))
+    ASSERT_EQ(scene.intersect(ray), intersect_reference(scene.mesh(), ray));
+}
+
+TEST(Accelerator, ErrorsNameTheAreaAndThePart) {
+  const TriangleMesh mesh = random_mesh(20, 9);
+  std::vector<InfluenceArea> areas = some_areas();
+  std::get<PointArea>(areas[1].shape).near_z = 7;
+  Error error = error_of([&] { Accelerator(mesh, areas); });
+  EXPECT_EQ(error.code, ErrorCode::kBadArea);
+  EXPECT_NE(std::string(error.what()).find("areas[1] 'lamp'"), std::string::npos) << error.what();
+
+  TriangleMesh bad = mesh;
+  bad.triangles[3][1] = 1000;
+  EXPECT_EQ(error_of([&] { Accelerator(bad, some_areas()); }).code, ErrorCode::kBadMesh);
+
+  AcceleratorOptions options;
+  options.local.measure = "PHA";
+  EXPECT_EQ(error_of([&] { Accelerator(mesh, some_areas(), options); }).code, ErrorCode::kUsage);
+  options = {};
+  options.top_level.max_level = 30;
+  EXPECT_EQ(error_of([&] { Accelerator(mesh, some_areas(), options); }).code, ErrorCode::kUsage);
+}
+
+TEST(Accelerator, RefusesPartsThatDoNotFit) {
+  const auto mesh = std::make_shared<const TriangleMesh>(random_mesh(20, 10));
+  const Registry registry = default_registry();
+  const auto global = std::make_shared<const Bvh>(build_global_tree(*mesh, {"SAH", "ALL", "binned", {}}, registry));
+  const LocalTree local = build_local_tree(*mesh, z_area("sun", -2, 4), {"PAH", "ALL", "binned", {}}, registry);
+
+  EXPECT_EQ(error_of([&] { Accelerator(nullptr, {local}, global); }).code, ErrorCode::kUsage);
+  EXPECT_EQ(error_of([&] { Accelerator(mesh, {local}, nullptr); }).where, "global tree");
+  LocalTree no_tree = local;
+  no_tree.tree = nullptr;
+  EXPECT_EQ(error_of([&] { Accelerator(mesh, {local, no_tree}, global); }).where, "areas[1] 'sun'");
+
+  Bvh wrong = *local.tree;
+  wrong.prims[0] = 20;  // no such triangle
+  LocalTree bad = local;
+  bad.tree = std::make_shared<const Bvh>(wrong);
+  EXPECT_EQ(error_of([&] { Accelerator(mesh, {bad}, global); }).where, "areas[0] 'sun'");
+  // A global tree must hold every triangle.
+  EXPECT_EQ(error_of([&] { Accelerator(mesh, {local}, local.tree); }).where, "global tree");
+}
+
+}  // namespace
+}  // namespace raygrain

@@ -1,0 +1,41 @@
+// Small hand-made scenes for tests of the accelerator.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "raygrain/accelerator.h"
+
+namespace raygrain::test {
+
+inline void add_triangle(TriangleMesh& mesh, Vec3 a, Vec3 b, Vec3 c) {
+  const auto first = static_cast<uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
+  mesh.triangles.push_back({first, first + 1, first + 2});
+}
+
+/// A triangle in the plane z = `z` that holds the circle of `radius` around the z axis.
+inline void add_floor(TriangleMesh& mesh, float z, float radius) {
+  add_triangle(mesh, {-4 * radius, -2 * radius, z}, {4 * radius, -2 * radius, z}, {0, 4 * radius, z});
+}
+
+/// The box |x|, |y| <= half, z_begin <= z <= z_begin + depth, with rays along +z.
+inline InfluenceArea z_area(const std::string& name, float z_begin, float depth, float half = 1,
+                            float tolerance = 0.01f) {
+  return {name, PlaneArea{{0, 0, z_begin}, {0, 0, 1}, {0, 1, 0}, half, half, depth}, tolerance};
+}
+
+/// An accelerator from local trees with predicted costs of the test's choice, one per area.
+inline Accelerator with_costs(const TriangleMesh& mesh, const std::vector<InfluenceArea>& areas,
+                              const std::vector<double>& costs, const TopLevelOptions& top_level = {}) {
+  const Registry registry = default_registry();
+  std::vector<LocalTree> locals;
+  for (size_t i = 0; i < areas.size(); ++i) {
+    locals.push_back(build_local_tree(mesh, areas[i], {"PAH", "ALL", "binned", {}}, registry));
+    locals.back().predicted_cost = costs[i];
+  }
+  auto global = std::make_shared<const Bvh>(build_global_tree(mesh, {"SAH", "ALL", "binned", {}}, registry));
+  return Accelerator(std::make_shared<const TriangleMesh>(mesh), std::move(locals), std::move(global), top_level);
+}
+
+}  // namespace raygrain::test
