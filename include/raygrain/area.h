@@ -30,15 +30,16 @@ struct PointArea {
   float fov_x = 90, fov_y = 90, near_z = 0.1f, far_z = 100;
 };
 
-/// `tolerance` = 1 - |cos| of the angle up to which a direction counts as the area's own.
+/// `tolerance` = 1 - |cos| of the angle up to which a direction counts as the area's own (0: up to the rounding of a
+/// float direction).
 struct InfluenceArea {
   std::string name;
   std::variant<PlaneArea, PointArea> shape;
   float tolerance = 0.01f;
 };
 
-/// Throws Error (kBadArea, naming `where` and the field) unless sizes are positive and finite, directions are not zero,
-/// 0 < near_z < far_z, 0 < fov < 180, and 0 <= tolerance < 1.
+/// Throws Error (kBadArea, naming `where` and the field) unless all numbers are finite, sizes are positive, directions
+/// are not zero, 0 < near_z < far_z, 0 < fov < 180, and 0 <= tolerance < 1. A zero `up` is allowed: see make_frame.
 void validate(const InfluenceArea& area, const std::string& where);
 
 struct Vec2d {
@@ -89,17 +90,20 @@ class AreaGeometry {
   /// ray's origin; every direction is affine at the eye itself.
   bool is_direction_affine(const Ray& ray) const;
 
-  /// Affine and starting inside the region.
+  /// A valid ray that is affine and starts inside the region, with tmin >= 0: what it meets at or before its exit
+  /// distance then overlaps the region.
   bool serves(const Ray& ray) const;
 
   /// The travel direction of the area's rays at a point (not normalised; the axis for a plane area, and at the eye).
   Vec3d ray_direction(Vec3d point) const;
 
-  /// The outline of a box as the area's rays see it. A box around the eye or wholly behind the near plane is clipped to
-  /// z >= near_z first and may give an empty polygon.
+  /// The outline of a box as the area's rays see it, in the projection. For a point area a box that reaches before the
+  /// near plane is clipped to z >= near_z first and may give an empty polygon; the far plane and the depth of a plane
+  /// area do not matter. An empty box has an empty outline. Boxes must be finite.
   ConvexPolygon projected_hull(const Bounds& box, Culling culling) const;
 
-  /// Area of `projected_hull`, computed faster where the box projects into the window.
+  /// Area of `projected_hull`, computed faster where the box projects into the window. Never above `window_area` when
+  /// culled.
   double projected_area(const Bounds& box, Culling culling) const;
 
   /// Probability in [0, 1] that a ray uniform in the window, long enough to leave the region, meets the box within the
@@ -111,6 +115,7 @@ class AreaGeometry {
   Frame frame_;
   ConvexRegion region_;
   Vec2d window_half_;
+  double near_z_ = 0, far_z_ = 0;  // of the region, along the frame's forward axis
 };
 
 /// |direction| components of a unit direction: with face areas (A_yz, A_zx, A_xy) they give the orthographic projected
@@ -120,9 +125,10 @@ Vec3d parallel_face_weights(Vec3d direction);
 /// The same area as three parallelograms of projected edges (figure 11 of the paper).
 double three_parallelogram_area(const Frame& frame, const Bounds& box);
 
-/// The corners (numbered as in `corner`) on the outline of a box, counterclockwise as seen along the rays, from the
-/// signs of the travel direction at the box (algorithms 2 and 3 of the paper). `visible_faces` has bit k set where face
-/// k is seen: 0 x=lo, 1 x=hi, 2 y=lo, 3 y=hi, 4 z=lo, 5 z=hi. At most 6 corners; none for impossible or empty sets.
+/// The corners (numbered as in `corner`) on the outline of a box, counterclockwise in the (x, y) of a frame that looks
+/// along the rays, from the faces that they see (algorithms 2 and 3 of the paper). `visible_faces` has bit k set where
+/// face k is seen: 0 x=lo, 1 x=hi, 2 y=lo, 3 y=hi, 4 z=lo, 5 z=hi. At most 6 corners; none for impossible or empty
+/// sets.
 std::span<const int> contour_corners(unsigned visible_faces);
 
 /// Visible faces for parallel rays of a travel direction, and for rays from a point (none from inside the box).
@@ -130,14 +136,16 @@ unsigned visible_faces_along(Vec3d direction);
 unsigned visible_faces_from(Vec3d eye, const Bounds& box);
 
 /// The plane area around `scene` for light that travels along `direction`: its window covers the scene's projection
-/// with a margin of 0.1 %, its depth the whole scene. Throws Error (kBadArea) for a zero direction or an empty box.
+/// with a margin of 0.1 % (more where the scene is flat), its depth the whole scene. Throws Error (kBadArea) for a zero
+/// direction or an empty box.
 InfluenceArea directional_light_area(const std::string& name, Vec3 direction, const Bounds& scene);
 
-/// Six 90-degree frusta around a point (named NAME+x, NAME-x, ...) that together reach all of `scene`; near_z is 1e-3
-/// of the distance to the farthest corner.
+/// Six 90-degree frusta around a point (named NAME+x, NAME-x, NAME+y, ...) that together hold all directions and reach
+/// all of `scene`; near_z is 1e-3 of the distance to the farthest corner. Throws Error (kBadArea) for an empty box.
 std::vector<InfluenceArea> point_light_areas(const std::string& name, Vec3 position, const Bounds& scene);
 
-/// The frustum of a camera: vertical field of view in degrees, aspect = width / height.
+/// The frustum of a camera that reaches all of `scene`: vertical field of view in degrees, aspect = width / height,
+/// near_z as of point lights. Throws Error (kBadArea) where these make no frustum.
 InfluenceArea camera_area(const std::string& name, Vec3 eye, Vec3 target, float fov_y, float aspect,
                           const Bounds& scene);
 
