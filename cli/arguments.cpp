@@ -62,6 +62,14 @@ void Arguments::whole(const std::string& flags, uint64_t& target, Limits limits,
   describe(add_text(*app_, flags, take, help)->default_str(std::to_string(target)), "N", group_);
 }
 
+void Arguments::optional_whole(const std::string& flags, std::optional<uint64_t>& target, Limits limits,
+                               const std::string& help) {
+  const auto take = [&target, limits, name = long_name(flags)](const std::string& value) {
+    target = parse_whole(name, value, limits.lo, limits.hi);
+  };
+  describe(add_text(*app_, flags, take, help), "N", group_);
+}
+
 void Arguments::real(const std::string& flags, const std::string& value_name, std::optional<float>& target,
                      std::pair<float, float> between, const std::string& help) {
   const auto take = [&target, between, name = long_name(flags)](const std::string& value) {

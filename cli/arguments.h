@@ -38,6 +38,8 @@ class Arguments {
     uint64_t lo = 0, hi = UINT64_MAX;
   };
   void whole(const std::string& flags, uint64_t& target, Limits limits, const std::string& help);
+  void optional_whole(const std::string& flags, std::optional<uint64_t>& target, Limits limits,
+                      const std::string& help);
   /// A number strictly between lo and hi.
   void real(const std::string& flags, const std::string& value_name, std::optional<float>& target,
             std::pair<float, float> between, const std::string& help);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -22,7 +23,7 @@ using Json = nlohmann::ordered_json;
 struct Options {
   CommonOptions common;
   std::string scene, output;
-  uint64_t size = 0, seed = 1;
+  std::optional<uint64_t> size, seed;
 };
 
 Json numbers(Vec3 v) {
@@ -92,11 +93,19 @@ int save(const Options& options, const Scene& scene, const Output& output) {
   return kSuccess;
 }
 
+ProceduralOptions procedural_options(const Options& options) {
+  if (!options.scene.starts_with("procedural:"))
+    return {options.scene, static_cast<uint32_t>(options.size.value_or(0)), options.seed.value_or(1)};
+  ProceduralOptions result = parse_procedural(options.scene);
+  if (options.size) result.size = static_cast<uint32_t>(*options.size);
+  if (options.seed) result.seed = *options.seed;
+  return result;
+}
+
 int generate(const Options& options) {
   const Output output(options.common);
   check_target(options.output);
-  const std::string kind = options.scene;
-  return save(options, generate_scene({kind, static_cast<uint32_t>(options.size), options.seed}), output);
+  return save(options, generate_scene(procedural_options(options)), output);
 }
 
 int convert(const Options& options) {
@@ -121,9 +130,10 @@ constexpr char kTargetHelp[] = "Where to write it: .ply, .obj, or .json for a sc
 
 Action declare_generate(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
-  arguments.operand("KIND", options->scene, "city, forest, terrain, random100 or random1000");
-  arguments.whole("--size", options->size, {0, UINT32_MAX}, "Blocks, trees or cells per side; 0 = the kind's default");
-  arguments.whole("--seed", options->seed, {}, "Other seeds give other scenes of the kind");
+  arguments.operand("KIND", options->scene,
+                    "city, forest, terrain, random100 or random1000; or procedural:KIND?size=N&seed=S");
+  arguments.optional_whole("--size", options->size, {1, UINT32_MAX}, "Buildings, trees or cells per side [by kind]");
+  arguments.optional_whole("--seed", options->seed, {}, "Other seeds give other scenes of the kind [1]");
   arguments.required_text("-o,--output", "FILE", options->output, kTargetHelp);
   add_common(arguments, options->common);
   return [options] { return generate(*options); };
