@@ -127,7 +127,7 @@ double plane_area(const Frame& frame, Vec2d half, const Bounds& box, Culling cul
   const double reach_x = half_extent(frame.right, size), reach_y = half_extent(frame.up, size);
   if (x + reach_x <= half.x && y + reach_y <= half.y) return std::min(whole, 4 * half.x * half.y);
   if (x - reach_x >= half.x || y - reach_y >= half.y) return 0;
-  return culled_area(plane_outline(frame, box), half);
+  return std::min(culled_area(plane_outline(frame, box), half), whole);  // exactly 0 for flat boxes seen edge-on
 }
 
 }  // namespace
@@ -163,10 +163,10 @@ double AreaGeometry::hit_probability(const Bounds& box) const {
   const LocalBox local(frame_, box);
   const double lowest = local.min_depth(), highest = local.max_depth();
   if (highest < near_z_ || lowest > far_z_) return 0;
-  const double area = lowest >= near_z_ && highest <= far_z_
-                          ? projected_area(box, Culling::kWindow)
-                          : culled_area(clipped_hull(local, near_z_, far_z_, !is_plane()), window_half_);
-  return std::min(area / window_area(), 1.0);
+  const double whole = projected_area(box, Culling::kWindow);
+  if (whole == 0 || (lowest >= near_z_ && highest <= far_z_)) return std::min(whole / window_area(), 1.0);
+  const double part = culled_area(clipped_hull(local, near_z_, far_z_, !is_plane()), window_half_);
+  return std::min(std::min(part, whole) / window_area(), 1.0);
 }
 
 Vec3d parallel_face_weights(Vec3d direction) {

@@ -70,11 +70,12 @@ std::span<const int> contour_corners(unsigned visible_faces) {
   return {kOutlines[visible_faces].corners.data(), kOutlines[visible_faces].count};
 }
 
+// Without branches: builders ask for boxes on all sides in random order.
 unsigned visible_faces_along(Vec3d direction) {
   unsigned faces = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    if (direction[axis] > 0) faces |= 1u << (2 * axis);
-    if (direction[axis] < 0) faces |= 2u << (2 * axis);
+    const auto lo = static_cast<unsigned>(direction[axis] > 0), hi = static_cast<unsigned>(direction[axis] < 0);
+    faces |= (lo | hi << 1) << (2 * axis);
   }
   return faces;
 }
@@ -82,10 +83,9 @@ unsigned visible_faces_along(Vec3d direction) {
 unsigned visible_faces_from(Vec3d eye, const Bounds& box) {
   unsigned faces = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    if (eye[axis] < static_cast<double>(box.lo[axis]))
-      faces |= 1u << (2 * axis);
-    else if (eye[axis] > static_cast<double>(box.hi[axis]))
-      faces |= 2u << (2 * axis);
+    const auto lo = static_cast<unsigned>(eye[axis] < static_cast<double>(box.lo[axis]));
+    const auto hi = static_cast<unsigned>(eye[axis] > static_cast<double>(box.hi[axis]));
+    faces |= (lo | hi << 1) << (2 * axis);
   }
   return faces;
 }
