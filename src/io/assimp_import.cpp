@@ -1,5 +1,6 @@
 // The formats that are not read here go through Assimp. This is the only file that knows it.
-#include <cmath>
+#include <new>
+#include <utility>
 
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
@@ -109,6 +110,7 @@ PolygonMesh import_with_assimp(const std::string& path) {
   const aiScene* scene = importer.ReadFile(path, 0);
   if (!scene) {
     std::string reason = importer.GetErrorString();
+    if (reason == "std::bad_alloc") throw std::bad_alloc();
     while (!reason.empty() && (reason.back() == '.' || reason.back() == '\n')) reason.pop_back();
     throw Error(ErrorCode::kMalformed, path, reason.empty() ? "cannot be imported" : reason);
   }

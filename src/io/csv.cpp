@@ -79,13 +79,13 @@ Ray parse_ray(const Line& line, const std::vector<size_t>& columns, const std::s
   std::array<float, kRayColumns.size()> values{0, 0, 0, 0, 0, 0, Ray{}.tmin, Ray{}.tmax};
   size_t count = 0;
   for_each_field(line.text, [&](std::string_view field, size_t column) {
-    const std::string_view shown = field.empty() ? "nothing" : field;
     if (count == columns.size())
       throw Error(ErrorCode::kMalformed, place(path, line.number, column),
                   "more fields than the header's " + std::to_string(columns.size()));
     const std::optional<float> value = parse_float(field);
     if (!value)
-      throw Error(ErrorCode::kMalformed, place(path, line.number, column), in_quotes(shown) + " is not a number",
+      throw Error(ErrorCode::kMalformed, place(path, line.number, column),
+                  (field.empty() ? "an empty field" : in_quotes(field)) + " is not a number",
                   "numbers look like 1.5, -2e-3, inf or nan");
     values[columns[count++]] = *value;
   });
