@@ -1,0 +1,176 @@
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "raygrain/error.h"
+#include "raygrain/heuristics.h"
+#include "raygrain/rays.h"
+
+#include "geometry/area_support.h"
+
+namespace raygrain {
+namespace {
+
+using test::point_inside;
+using test::random_area;
+using test::random_box;
+using test::random_vector;
+using test::segment_meets;
+
+Bounds small_box(const AreaGeometry& area, Random& random) {
+  const double size = test::diameter(area.region()) * std::pow(10.0, random.uniform(-1.5, -0.5));
+  const Vec3d middle = point_inside(area.region(), random);
+  const Vec3d half = Vec3d{random.uniform(0.1, 1), random.uniform(0.1, 1), random.uniform(0.1, 1)} * size;
+  return {to_float(middle - half), to_float(middle + half)};
+}
+
+TEST(Measures, SurfaceAreaIsAQuarterOfTheSurface) {
+  const Bounds box{{0, 0, 0}, {1, 2, 3}};
+  EXPECT_EQ(surface_area_measure()(box), 22 / 4.0f);
+  EXPECT_EQ(surface_area_measure().total(box), 22 / 4.0f);
+  EXPECT_EQ(RayMeasure()(box), 22 / 4.0f);
+}
+
+TEST(Measures, DirectionalIsTheProjectedAreaOfParallelRays) {
+  for (uint64_t seed = 1; seed <= 2000; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    const InfluenceArea area = random_area(random, true);
+    const Bounds box = random_box(AreaGeometry(area), random);
+    const float projected = projected_area_measure(area, Culling::kNone)(box);
+    const float weighted = directional_measure(std::get<PlaneArea>(area.shape).direction)(box);
+    EXPECT_NEAR(weighted, projected, 1e-6f * projected + 1e-12f);
+  }
+}
+
+TEST(Measures, DirectionalRefusesNoDirection) {
+  EXPECT_THROW(directional_measure({}), Error);
+  EXPECT_THROW(directional_measure({NAN, 0, 0}), Error);
+}
+
+// Cauchy: over all directions the mean projected area of a convex body is a quarter of its surface.
+TEST(Measures, SurfaceAreaIsTheMeanOverAllDirections) {
+  Random random(5);
+  const Bounds box{{0, 0, 0}, {1, 2, 0.2f}};
+  double sum = 0;
+  constexpr int kDirections = 200'000;
+  for (int i = 0; i < kDirections;) {
+    const Vec3d direction = random_vector(random);
+    if (dot(direction, direction) > 1 || dot(direction, direction) < 1e-4) continue;
+    const Vec3d weights = parallel_face_weights(normalized(direction));
+    sum += weights.x * 0.4 + weights.y * 0.2 + weights.z * 2;
+    ++i;
+  }
+  EXPECT_NEAR(sum / kDirections, static_cast<double>(surface_area_measure()(box)), 0.006);
+}
+
+TEST(Measures, CulledTotalIsTheWindow) {
+  for (uint64_t seed = 1; seed <= 1000; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    const InfluenceArea area = random_area(random, seed % 2 == 0);
+    const AreaGeometry geometry(area);
+    const RayMeasure culled = projected_area_measure(area), whole = projected_area_measure(area, Culling::kNone);
+    const Bounds box = random_box(geometry, random);
+    EXPECT_EQ(culled.total(box), static_cast<float>(geometry.window_area()));
+    EXPECT_EQ(whole.total(box), whole(box));
+    EXPECT_LE(culled(box), culled.total(box));
+    EXPECT_LE(culled(box), whole(box) * 1.00001f + 1e-12f);
+    EXPECT_EQ(culled(region_bounds(geometry.region())), culled.total(box));
+  }
+}
+
+TEST(Measures, ManyBoxesAtOnceAreTheSameAsOneByOne) {
+  Random random(3);
+  const InfluenceArea area = random_area(random, false);
+  std::vector<Bounds> boxes;
+  for (int i = 0; i < 100; ++i) boxes.push_back(random_box(AreaGeometry(area), random));
+  const std::vector<Ray> rays = cast_rays(AreaRays{area}, 100, 1);
+  for (const RayMeasure& measure :
+       {surface_area_measure(), directional_measure({1, 2, 3}), projected_area_measure(area), sampled_measure(rays)}) {
+    std::vector<float> out(boxes.size());
+    measure(boxes, out);
+    for (size_t i = 0; i < boxes.size(); ++i) EXPECT_EQ(out[i], measure(boxes[i]));
+  }
+}
+
+TEST(Measures, HugeBoxesAreFinite) {
+  const Bounds huge{{-1e38f, -1e38f, -1e38f}, {1e38f, 1e38f, 1e38f}};
+  EXPECT_TRUE(std::isfinite(projected_area_measure({"z", PlaneArea{}}, Culling::kNone)(huge)));
+  EXPECT_TRUE(std::isfinite(projected_area_measure({"z", PointArea{}}, Culling::kNone)(huge)));
+  EXPECT_EQ(projected_area_measure({"z", PlaneArea{}})(huge), 4);
+}
+
+// Rays of every kind: parallel to axes, starting inside boxes and on their faces, bounded, reversed, invalid.
+std::vector<Ray> mixed_rays(const Bounds& box, Random& random) {
+  std::vector<Ray> rays;
+  for (int i = 0; i < 200; ++i) {
+    Ray ray{to_float(random_vector(random) * 3.0), to_float(random_vector(random))};
+    if (i % 4 == 1) ray.direction[static_cast<int>(random.below(3))] = random.below(2) != 0 ? 0.0f : -0.0f;
+    if (i % 4 == 2) ray.direction = {0, random.below(2) != 0 ? 1.0f : -1.0f, 0};
+    if (i % 3 == 1) ray.origin = corner(box, static_cast<int>(random.below(8)));
+    if (i % 5 == 1) ray.tmin = static_cast<float>(random.uniform(-3, 1));
+    if (i % 5 > 2) ray.tmax = static_cast<float>(random.uniform(0, 3));
+    rays.push_back(ray);
+  }
+  rays.push_back({{0, 0, 0}, {0, 0, 0}});
+  rays.push_back({{NAN, 0, 0}, {1, 0, 0}});
+  rays.push_back({{0, 0, 0}, {1, kInf, 0}});
+  return rays;
+}
+
+TEST(Measures, SampledCountsTheRaysThatMeetABox) {
+  double counted = 0;
+  for (uint64_t seed = 1; seed <= 500; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    Bounds box;
+    box.extend(to_float(random_vector(random)));
+    box.extend(to_float(random_vector(random)));
+    const std::vector<Ray> rays = mixed_rays(box, random);
+    int expected = 0;
+    for (const Ray& ray : rays)
+      expected += is_valid(ray) && segment_meets(box, to_double(ray.origin), to_double(ray.direction),
+                                                 static_cast<double>(ray.tmin), static_cast<double>(ray.tmax));
+    EXPECT_EQ(sampled_measure(rays)(box), static_cast<float>(expected));
+    EXPECT_EQ(sampled_measure(rays).total(box), static_cast<float>(rays.size()));
+    counted += expected;
+  }
+  EXPECT_GT(counted, 5000);
+  EXPECT_EQ(sampled_measure({})(Bounds{{0, 0, 0}, {1, 1, 1}}), 0);
+}
+
+// Rays that the caster draws for an area meet boxes as often as the projected area says.
+TEST(Measures, ProjectedAreaAgreesWithSampledRays) {
+  constexpr size_t kRays = 20'000;
+  double squares = 0;
+  int counted = 0;
+  for (uint64_t seed = 1; seed <= 200; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    const InfluenceArea area = random_area(random, seed % 2 == 0);
+    const AreaGeometry geometry(area);
+    const RayMeasure culled = projected_area_measure(area),
+                     sampled = sampled_measure(cast_rays(AreaRays{area}, kRays, seed));
+    for (int i = 0; i < 5; ++i) {
+      const Bounds box = small_box(geometry, random);
+      // Rays start on the near face; parallel projection knows no near face, so such boxes must lie beyond it.
+      bool beyond = true;
+      for (int k = 0; k < 8; ++k) beyond = beyond && to_local(geometry.frame(), to_double(corner(box, k))).z >= 0;
+      if (!beyond) continue;
+      const double p = static_cast<double>(culled(box)) / static_cast<double>(culled.total(box));
+      const double variance = kRays * p * (1 - p);
+      if (variance < 20) continue;
+      const double z = (static_cast<double>(sampled(box)) - kRays * p) / std::sqrt(variance);
+      EXPECT_LE(std::fabs(z), 5);
+      squares += z * z;
+      ++counted;
+    }
+  }
+  EXPECT_GT(counted, 300);
+  EXPECT_NEAR(squares / counted, 1, 0.25);
+}
+
+}  // namespace
+}  // namespace raygrain
