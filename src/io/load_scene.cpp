@@ -1,0 +1,63 @@
+#include <algorithm>
+#include <filesystem>
+#include <ostream>
+
+#include "raygrain/error.h"
+#include "raygrain/io.h"
+
+#include "io/scene_json.h"
+
+namespace raygrain {
+namespace {
+
+std::string lower_case(std::string text) {
+  for (char& symbol : text)
+    if (symbol >= 'A' && symbol <= 'Z') symbol = static_cast<char>(symbol - 'A' + 'a');
+  return text;
+}
+
+bool is_json(const std::string& path) {
+  return lower_case(std::filesystem::path(path).extension().string()) == ".json";
+}
+
+Scene load_mesh_alone(const std::string& path, const LoadOptions& options) {
+  Scene scene;
+  LoadReport report;
+  scene.name = file_stem(path);
+  scene.mesh = load_mesh(path, options, &report);
+  scene.dropped_lines = report.dropped_lines;
+  scene.dropped_points = report.dropped_points;
+  return scene;
+}
+
+}  // namespace
+
+Scene load_scene(const std::string& scene, const LoadOptions& options) {
+  if (scene.starts_with("procedural:")) return generate_scene(parse_procedural(scene));
+  return is_json(scene) ? read_scene(scene, options) : load_mesh_alone(scene, options);
+}
+
+void save_scene(const Scene& scene, const std::string& path) {
+  if (!is_json(path))
+    throw Error(ErrorCode::kUsage, path, "a scene is saved as NAME.json and NAME.ply",
+                "Give a name that ends in .json");
+  const std::filesystem::path mesh_path = std::filesystem::path(path).replace_extension(".ply");
+  save_mesh(scene.mesh, mesh_path.string());
+  const std::string text = scene_json(scene, mesh_path.filename().string());
+  write_file_atomically(path, [&](std::ostream& out) { out << text; });
+}
+
+std::vector<Ray> make_rays(const RaySet& set, const TriangleMesh& mesh) {
+  struct Maker {
+    const RaySet& set;
+    const TriangleMesh& mesh;
+
+    std::vector<Ray> operator()(const AreaRays& rays) const { return cast_rays(rays, set.count, set.seed); }
+    std::vector<Ray> operator()(const SurfaceRays& rays) const { return cast_rays(rays, mesh, set.count, set.seed); }
+    std::vector<Ray> operator()(const CameraRays& rays) const { return cast_rays(rays); }
+    std::vector<Ray> operator()(const std::vector<Ray>& rays) const { return rays; }
+  };
+  return std::visit(Maker{set, mesh}, set.source);
+}
+
+}  // namespace raygrain
