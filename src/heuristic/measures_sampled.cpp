@@ -6,7 +6,7 @@ namespace raygrain {
 
 namespace {
 
-// The sample rays, one array per number: a box costs about two nanoseconds per ray.
+// The sample rays, one array per number: a box costs two to three nanoseconds per ray.
 struct SampleRays {
   std::vector<double> origin[3], inverse[3], tmin, tmax;
 
