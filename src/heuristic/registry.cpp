@@ -1,7 +1,6 @@
 #include "raygrain/registry.h"
 
 #include <algorithm>
-#include <numeric>
 
 #include "raygrain/error.h"
 
@@ -19,20 +18,23 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// Levenshtein distance.
+/// Insertions, deletions, replacements and swaps of neighbours: a swap is the commonest slip in names like SPFH.
 size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t{0});
-  for (size_t i = 0; i < a.size(); ++i) {
-    size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (size_t j = 0; j < b.size(); ++j) {
-      const size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({row[j] + 1, diagonal + 1, changed});
+  const size_t width = b.size() + 1;
+  std::vector<size_t> table((a.size() + 1) * width);
+  for (size_t i = 0; i <= a.size(); ++i)
+    for (size_t j = 0; j <= b.size(); ++j) {
+      size_t& least = table[i * width + j];
+      if (i == 0 || j == 0) {
+        least = i + j;
+        continue;
+      }
+      const size_t above = (i - 1) * width + j, left = i * width + j - 1;
+      least = std::min({table[above] + 1, table[left] + 1, table[above - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        least = std::min(least, table[(i - 2) * width + j - 2] + 1);
     }
-  }
-  return row.back();
+  return table.back();
 }
 
 /// "Did you mean PAH? Known: SAH, PAH, ...".

@@ -32,7 +32,7 @@ std::vector<NamedBuild> builds() {
     o.parameters.excellent_ratio = 0;
   });
   add("two bins", [](BuildOptions& o) { o.parameters.bins = 2; });
-  add("many bins", [](BuildOptions& o) { o.parameters.bins = 4096; });
+  add("many bins", [](BuildOptions& o) { o.parameters.bins = 1000; });
   add("few levels", [](BuildOptions& o) { o.parameters.max_levels = 3; });
   add("deep", [](BuildOptions& o) { o.parameters.max_levels = kMaxTreeLevels; });
   add("deep fallback", [](BuildOptions& o) { o.parameters.max_non_fallback_levels = 2; });
@@ -123,11 +123,12 @@ TEST(Builders, ExponentiallySpacedPrimitivesGiveDeepTreesWithoutRecursion) {
 }
 
 TEST(Builders, TreesNeverGrowDeeperThanStacksAllow) {
-  // A stop rule that never stops, and costs that cut off one of 2,000 primitives per level.
+  // A stop rule that never stops, and costs that cut off one of 400 primitives per level.
   Prims prims;
-  for (int i = 0; i < 2000; ++i) prims.add({{static_cast<float>(i), 0, 0}, {static_cast<float>(i) + 1, 1, 1}});
+  for (int i = 0; i < 400; ++i) prims.add({{static_cast<float>(i), 0, 0}, {static_cast<float>(i) + 1, 1, 1}});
   BuildOptions options;
-  options.parameters.bins = 4096;
+  options.parameters.bins = 1000;
+  options.strategy.orientation = fixed_axes({{0, 1}});
   options.strategy.stop = [](const StopState&, const PaperParameters&) { return false; };
   options.strategy.cost = [](float, uint32_t count) { return -static_cast<float>(count) * static_cast<float>(count); };
   for (const auto build : {build_paper, build_binned}) {
