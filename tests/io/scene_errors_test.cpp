@@ -270,7 +270,7 @@ TEST_F(SceneErrors, BrokenBytesAreNeverMoreThanAnError) {
   ASSERT_NO_THROW(load_text(kWholeScene));
   const std::string good = kWholeScene, path = folder_.file("scene.json");
   size_t loaded = 0, refused = 0;
-  for (uint64_t seed = 1; seed <= 3000; ++seed) {
+  for (uint64_t seed = 1; seed <= 1500; ++seed) {
     SCOPED_TRACE(seed);
     Random random(seed);
     std::string text = good;
@@ -295,13 +295,13 @@ TEST_F(SceneErrors, BrokenBytesAreNeverMoreThanAnError) {
     std::ofstream(path, std::ios::binary) << text;
     ++(loads_or_throws_error(path) ? loaded : refused);
   }
-  EXPECT_GT(loaded, 100u);  // unchanged, or changed where it does not matter
-  EXPECT_GT(refused, 1000u);
+  EXPECT_GT(loaded, 50u);  // unchanged, or changed where it does not matter
+  EXPECT_GT(refused, 500u);
 }
 
 TEST_F(SceneErrors, EveryTruncationIsRefused) {
   const std::string good = kWholeScene, path = folder_.file("scene.json");
-  for (size_t length = 0; length < good.size(); ++length) {
+  for (size_t length = 0; length < good.size(); length += 3) {
     std::ofstream(path, std::ios::binary) << good.substr(0, length);
     ASSERT_FALSE(loads_or_throws_error(path)) << length;
   }
