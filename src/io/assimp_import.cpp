@@ -1,4 +1,5 @@
 // The formats that are not read here go through Assimp. This is the only file that knows it.
+#include <cctype>
 #include <new>
 #include <utility>
 
@@ -102,6 +103,18 @@ class Collector {
   PolygonMesh mesh_;
 };
 
+void check_gltf(const aiScene& scene, const std::string& path) {
+  const std::string ending = path.substr(path.find_last_of('.') + 1);
+  if (ending.size() < 3 || std::tolower(static_cast<unsigned char>(ending[0])) != 'g') return;
+  const std::optional<uint64_t> announced = announced_gltf_faces(path);
+  uint64_t imported = 0;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) imported += scene.mMeshes[i]->mNumFaces;
+  if (announced && imported < *announced)
+    throw Error(ErrorCode::kBadMesh, path,
+                std::to_string(*announced - imported) + " faces use vertices that are out of range",
+                "indices count from 0");
+}
+
 }  // namespace
 
 PolygonMesh import_with_assimp(const std::string& path) {
@@ -114,6 +127,7 @@ PolygonMesh import_with_assimp(const std::string& path) {
     while (!reason.empty() && (reason.back() == '.' || reason.back() == '\n')) reason.pop_back();
     throw Error(ErrorCode::kMalformed, path, reason.empty() ? "cannot be imported" : reason);
   }
+  check_gltf(*scene, path);
   return Collector(*scene, path).collect();
 }
 

@@ -1,6 +1,7 @@
 // What the mesh readers hand over: polygons as a file holds them, before they become triangles.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ PolygonMesh parse_stl(const std::string& bytes, const std::string& path);
 
 /// Everything else that Assimp knows, with node transforms applied. Throws Error: kMalformed, kUnsupported, kBadMesh.
 PolygonMesh import_with_assimp(const std::string& path);
+
+/// The faces, lines and points that the meshes of a glTF 2 file announce; nothing for other files.
+std::optional<uint64_t> announced_gltf_faces(const std::string& path);
 
 /// The endings that Assimp reads, like "3ds, blend, ...".
 std::string assimp_endings();
