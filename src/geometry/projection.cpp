@@ -67,6 +67,16 @@ Outline point_outline(const LocalBox& local, Vec3d eye, const Bounds& box) {
   return outline;
 }
 
+// A flat box seen from its own plane, or a box without any face, has no area, whatever rounding makes of its outline.
+bool is_edge_on(Vec3d eye, const Bounds& box) {
+  int flat = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (box.lo[axis] != box.hi[axis]) continue;
+    if (++flat == 2 || eye[axis] == static_cast<double>(box.lo[axis])) return true;
+  }
+  return false;
+}
+
 // The outline of a box after clipping to near_z <= z <= far_z: the hull of the corners and edge points that are left.
 ConvexPolygon clipped_hull(const LocalBox& local, double near_z, double far_z, bool perspective) {
   std::array<Vec2d, 32> points;
@@ -148,6 +158,7 @@ ConvexPolygon AreaGeometry::projected_hull(const Bounds& box, Culling culling) c
 double AreaGeometry::projected_area(const Bounds& box, Culling culling) const {
   if (is_empty(box)) return 0;
   if (is_plane()) return plane_area(frame_, window_half_, box, culling);
+  if (is_edge_on(frame_.origin, box)) return 0;
   const LocalBox local(frame_, box);
   if (local.min_depth() >= near_z_) {
     const Outline outline = point_outline(local, frame_.origin, box);

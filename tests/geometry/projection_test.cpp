@@ -145,6 +145,33 @@ TEST(Projection, BoxesAboutTheEyePlane) {
   EXPECT_GT(area.projected_area({{12, -1, 5}, {14, 1, 100}}, Culling::kWindow), 0);
 }
 
+TEST(Projection, BoxesSeenEdgeOnHaveNoArea) {
+  for (uint64_t seed = 1; seed <= 1000; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    InfluenceArea influence = random_area(random, false);
+    const Vec3 eye = std::get<PointArea>(influence.shape).eye;
+    const AreaGeometry point(influence);
+    const Bounds box = random_box(point, random);
+    const int axis = static_cast<int>(random.below(3)), other = (axis + 1) % 3;
+    Bounds wall = box, edge = box;
+    wall.lo[axis] = wall.hi[axis] = eye[axis];
+    edge.hi[axis] = edge.lo[axis];
+    edge.hi[other] = edge.lo[other];
+    for (const Bounds& flat : {wall, edge}) {
+      EXPECT_EQ(point.projected_area(flat, Culling::kNone), 0);
+      EXPECT_EQ(point.projected_area(flat, Culling::kWindow), 0);
+      EXPECT_EQ(point.hit_probability(flat), 0);
+    }
+    PlaneArea plane = test::random_plane_area(random);
+    plane.direction = {};
+    plane.direction[other] = 1;
+    wall.lo[axis] = wall.hi[axis] = plane.center[axis];
+    EXPECT_EQ(AreaGeometry({"plane", plane}).hit_probability(wall), 0);
+    EXPECT_EQ(AreaGeometry({"plane", plane}).hit_probability(edge), 0);
+  }
+}
+
 TEST(Projection, PlaneAreaCountsOnlyItsDepth) {
   PlaneArea plane;
   plane.center = {0, 10, 0};
