@@ -52,7 +52,8 @@ std::vector<InfluenceArea> with_triangles(std::vector<InfluenceArea> areas, cons
 
 void add_area_options(Arguments& arguments, AreaOptions& options) {
   arguments.group("Influence areas (without any: the scene's own)");
-  arguments.text("--areas", "FILE.json", options.file, "Areas of a JSON file with \"areas\", or of a scene.json");
+  arguments.text("--areas", "FILE.json", options.file,
+                 "Areas of a JSON file (format raygrain-areas), or of a scene.json");
   arguments.vector("--sun", options.sun,
                    "Parallel light over the whole scene; X,Y,Z is the direction in which it travels");
   arguments.vector("--light", options.light, "A light at this point: six frusta of 90 degrees around it");
@@ -81,7 +82,7 @@ void check_area_options(const AreaOptions& options) {
 
 std::vector<InfluenceArea> choose_areas(const AreaOptions& options, const Scene& scene, const Output& output) {
   const Bounds box = mesh_bounds(scene.mesh);
-  if (!options.file.empty()) return load_areas(options.file);
+  if (!options.file.empty()) return load_areas(options.file, box);
   if (options.sun)
     return from_option("--sun", [&] { return std::vector{directional_light_area("sun", *options.sun, box)}; });
   if (options.light)

@@ -1,5 +1,6 @@
 #include "cli/open_scene.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <system_error>
@@ -9,16 +10,30 @@
 namespace raygrain::cli {
 
 namespace {
-constexpr uintmax_t kSlowToRead = uintmax_t{8} << 20;  // bytes; takes about a second
-}
 
-Scene open_scene(const std::string& scene, Progress& progress) {
-  std::error_code ignored;
-  const std::uintmax_t bytes = std::filesystem::file_size(scene, ignored);
-  if (!ignored && bytes > kSlowToRead) progress.announce("reading " + scene);
+constexpr uint64_t kSlowToRead = uint64_t{8} << 20;  // bytes; takes about a second
+constexpr uint64_t kLeastMemory = uint64_t{1} << 30, kMemoryPerByte = 200;
+
+/// What importers may use. A file that stands alone gets memory in proportion to its size: a few bytes that ask for
+/// gigabytes are hostile.
+LoadOptions import_limits(const std::string& scene, uint64_t bytes) {
   LoadOptions options;
   options.isolation = Isolation::kChildProcess;
-  Scene result = load_scene(scene, options);
+  const std::string ending = std::filesystem::path(scene).extension().string();
+  const bool names_other_files = ending == ".json" || ending == ".gltf";
+  if (!names_other_files && bytes < options.memory_limit / kMemoryPerByte)
+    options.memory_limit = std::min(options.memory_limit, kLeastMemory + bytes * kMemoryPerByte);
+  return options;
+}
+
+}  // namespace
+
+Scene open_scene(const std::string& scene, Progress& progress) {
+  std::error_code none;
+  const uintmax_t size = std::filesystem::file_size(scene, none);
+  const uint64_t bytes = none ? 0 : size;
+  if (bytes > kSlowToRead) progress.announce("reading " + scene);
+  Scene result = load_scene(scene, import_limits(scene, bytes));
   progress.erase();
   return result;
 }

@@ -12,7 +12,7 @@ namespace raygrain {
 namespace {
 
 constexpr Colour kPaper{250, 250, 248}, kInk{28, 30, 36}, kSoftInk{96, 100, 110}, kFrame{120, 124, 132};
-constexpr uint32_t kMargin = 24, kGap = 20, kBarWidth = 22, kLabelWidth = 96, kTick = 6;
+constexpr uint32_t kMargin = 24, kGap = 20, kBarWidth = 22, kLabelWidth = 116, kTick = 6;
 constexpr uint32_t kSmallestWidth = 200;  // of a map's column, so that its texts fit
 
 using NamedMap = std::pair<std::string, CostImage>;

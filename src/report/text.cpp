@@ -150,8 +150,8 @@ std::string verdict(const ReportRow& best, const ReportRow& baseline) {
   if (best.name == baseline.name || !(cost(baseline) > 0))
     return fmt::format("{}{} is best, at a cost of {:.2f} per ray.", start, best.name, cost(best));
   const double ratio = cost(best) / cost(baseline);
-  return fmt::format("{}{} costs {:.2f}x of {}: {:.2f} instead of {:.2f} per ray (nearest hit prunes).", start,
-                     best.name, ratio, baseline.name, cost(best), cost(baseline));
+  return fmt::format("{}{} costs {:.2f}x of {}: {:.2f} instead of {:.2f} per ray.", start, best.name, ratio,
+                     baseline.name, cost(best), cost(baseline));
 }
 
 }  // namespace raygrain

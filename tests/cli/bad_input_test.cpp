@@ -30,11 +30,11 @@ std::string ply_header(const std::string& vertices, const std::string& faces) {
 }
 
 std::string plane_area(const std::string& fields) {
-  return R"({"format": "raygrain-scene", "version": 1, "areas": [{"name": "bad", "plane": {)" + fields + "}}]}";
+  return R"({"format": "raygrain-areas", "version": 1, "areas": [{"name": "bad", "plane": {)" + fields + "}}]}";
 }
 
 std::string point_area(const std::string& fields) {
-  return R"({"format": "raygrain-scene", "version": 1, "areas": [{"name": "bad", "point": {)" + fields + "}}]}";
+  return R"({"format": "raygrain-areas", "version": 1, "areas": [{"name": "bad", "point": {)" + fields + "}}]}";
 }
 
 const char kGoodPlane[] =
@@ -109,7 +109,7 @@ std::vector<BadInput> bad_scenes() {
       bad_scene("json that ends early", "scene.json", R"({"format": "raygrain-scene", "version": 1, )",
                 "scene.json:1:"),
       bad_scene("json of another kind", "scene.json", "[1, 2, 3]", "scene.json"),
-      bad_scene("json of a later version", "scene.json", R"({"format": "raygrain-scene", "version": 99})", "99"),
+      bad_scene("json of a later version", "scene.json", R"({"format": "raygrain-scene", "version": 99})", "version"),
       {"unknown procedural kind", {"compare", "procedural:castle", "--out", "OUT"}, kUsage, "castle"},
       {"bad procedural size", {"compare", "procedural:city?size=big", "--out", "OUT"}, kUsage, "big"},
       {"unknown procedural parameter", {"compare", "procedural:city?height=3", "--out", "OUT"}, kUsage, "height"},
@@ -120,7 +120,7 @@ std::vector<BadInput> bad_areas_and_rays() {
   const std::string eye = R"("eye": [0, 0, 0], "forward": [0, 0, 1], )";
   return {
       bad_areas("areas file garbage", "no json", "AREAS"),
-      bad_areas("areas file without areas", R"({"format": "raygrain-scene", "version": 1})", "AREAS"),
+      bad_areas("areas file without areas", R"({"format": "raygrain-areas", "version": 1})", "AREAS"),
       bad_areas(
           "zero size",
           plane_area(R"("center": [0, 0, 0], "direction": [0, 0, 1], "half_width": 0, "half_height": 1, "depth": 9)"),

@@ -1,4 +1,5 @@
 // Ctrl-C at any moment: exit code 130 and no half-written file.
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -26,13 +27,19 @@ void interrupt_after(Milliseconds delay, int signal) {
   const bool running = program.is_running();
   program.send(signal);
   const int exit_code = program.wait();
-  if (running && exit_code != 0) EXPECT_EQ(exit_code, 128 + signal);
+  if (running && exit_code != 0) {
+    EXPECT_EQ(exit_code, 128 + signal);
+  }
   EXPECT_EQ(read_file(folder.file("errors")), "");
   for (const std::string& name : names_in(out)) {
     EXPECT_NE(std::find(kFinished.begin(), kFinished.end(), name), kFinished.end()) << name;
     const std::string content = read_file(out + "/" + name);
-    if (name.ends_with(".png")) EXPECT_EQ(content.substr(content.size() - 8, 4), "IEND") << name;
-    if (name.ends_with(".json")) EXPECT_TRUE(content.ends_with("}\n")) << name;
+    if (name.ends_with(".png")) {
+      EXPECT_EQ(content.substr(content.size() - 8, 4), "IEND") << name;
+    }
+    if (name.ends_with(".json")) {
+      EXPECT_TRUE(content.ends_with("}\n")) << name;
+    }
   }
 }
 
