@@ -1,0 +1,28 @@
+// docs/formats.md lists every metric with its unit and meaning.
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "raygrain/fields.h"
+
+namespace raygrain {
+namespace {
+
+TEST(FormatsDocument, ListsEveryField) {
+  const std::filesystem::path tests = std::filesystem::path(__FILE__).parent_path().parent_path();
+  std::ifstream file(tests.parent_path() / "docs" / "formats.md");
+  const std::string document{std::istreambuf_iterator<char>(file), {}};
+  for (const Field& field : fields()) {
+    const std::string begin = "\n| `" + std::string(field.name) + "` | " + std::string(field.unit) + " | ";
+    const size_t row = document.find(begin);
+    ASSERT_NE(row, std::string::npos) << field.name;
+    const std::string line = document.substr(row + 1, document.find('\n', row + 1) - row - 1);
+    EXPECT_TRUE(line.ends_with("| " + std::string(field.meaning) + " |")) << line;
+  }
+}
+
+}  // namespace
+}  // namespace raygrain
