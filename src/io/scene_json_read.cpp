@@ -70,11 +70,12 @@ std::vector<InfluenceArea> areas_of_scene(const JsonReader& root) {
   return not_empty(read_scene(root, {}).areas, root);
 }
 
+// Such a file needs no format, but must not have a wrong one.
 std::vector<InfluenceArea> read_areas_alone(const JsonReader& root, const SceneBounds& bounds) {
   constexpr std::array<std::string_view, 3> kKeys{"format", "version", "areas"};
   root.expect_keys(kKeys);
-  check_format(root, kAreasFormat);
   const JsonReader list = root.at("areas");
+  if (root.has("format") || root.has("version")) check_format(root, kAreasFormat);
   return not_empty(read_areas(list, bounds), list);
 }
 

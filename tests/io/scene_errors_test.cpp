@@ -1,4 +1,5 @@
 // What scene.json refuses, and how it says so.
+#include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -21,6 +22,12 @@ struct BadScene {
   const char* where;     // the end of Error::where
   const char* fragment;  // of the whole message
 };
+
+// Into a fresh file: overwriting one makes some file systems wait for the disk.
+void write_fresh(const std::string& path, const std::string& text) {
+  std::filesystem::remove(path);
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 // A scene of one triangle with this member more.
 std::string with(const std::string& member) {
@@ -209,7 +216,7 @@ class SceneErrors : public testing::Test {
     }
   }
   Scene load_text(const std::string& text) {
-    std::ofstream(folder_.file("scene.json"), std::ios::binary) << text;
+    write_fresh(folder_.file("scene.json"), text);
     return load_scene(folder_.file("scene.json"));
   }
 
@@ -292,7 +299,7 @@ TEST_F(SceneErrors, BrokenBytesAreNeverMoreThanAnError) {
           text.insert(at, text.substr(random.below(text.size()), 1 + random.below(30)));
       }
     }
-    std::ofstream(path, std::ios::binary) << text;
+    write_fresh(path, text);
     ++(loads_or_throws_error(path) ? loaded : refused);
   }
   EXPECT_GT(loaded, 50u);  // unchanged, or changed where it does not matter
@@ -302,7 +309,7 @@ TEST_F(SceneErrors, BrokenBytesAreNeverMoreThanAnError) {
 TEST_F(SceneErrors, EveryTruncationIsRefused) {
   const std::string good = kWholeScene, path = folder_.file("scene.json");
   for (size_t length = 0; length < good.size(); length += 3) {
-    std::ofstream(path, std::ios::binary) << good.substr(0, length);
+    write_fresh(path, good.substr(0, length));
     ASSERT_FALSE(loads_or_throws_error(path)) << length;
   }
 }

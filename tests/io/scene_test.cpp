@@ -236,6 +236,19 @@ TEST(LoadAreas, FromAFileOfAreasAlone) {
   expect_same(areas[0], {"a", PlaneArea{{0, 9, 0}, {0, -1, 0}, {0, 1, 0}, 2, 3, 20}});
 }
 
+TEST(LoadAreas, NeedsNoFormatButNoWrongOne) {
+  const SceneFile file;
+  const std::string areas = R"("areas": [{"name": "s", "sun": {"direction": [0, -1, 0]}}]})";
+  const Bounds box{{0, 0, 0}, {1, 2, 3}};
+  EXPECT_EQ(load_areas(file.write("{" + areas), box).size(), 1u);
+  EXPECT_EQ(load_areas(file.write(R"({"format": "raygrain-areas", "version": 1, )" + areas), box).size(), 1u);
+  for (const char* head : {R"({"format": "raygrain-areas", "version": 2, )", R"({"format": "gltf", "version": 1, )",
+                           R"({"version": 1, )", R"({"name": "x", )"})
+    EXPECT_THROW(load_areas(file.write(head + areas), box), Error) << head;
+  EXPECT_THROW(load_areas(file.write("{}"), box), Error);
+  EXPECT_THROW(load_areas(file.write(R"({"areas": []})"), box), Error);
+}
+
 TEST(LoadAreas, ShorthandsNeedAScene) {
   const SceneFile file;
   const std::string path = file.write(
