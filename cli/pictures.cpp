@@ -33,12 +33,17 @@ AreaResult area_result(const Comparison& comparison, size_t begin, size_t end) {
   return result;
 }
 
+std::string caption(const ComparisonRow& best, const ComparisonRow& baseline) {
+  const std::string text = fmt::format("cost per ray: {} {:.2f}", best.name, pruned_cost(best));
+  return &best == &baseline ? text : text + fmt::format(", {} {:.2f}", baseline.name, pruned_cost(baseline));
+}
+
 Image depth_picture(const Comparison& comparison, const AreaResult& result, unsigned threads) {
   const ComparisonRow& best = comparison.rows[result.best];
   const PictureSize size = picture_size(result.area, kDepthSide);
   const Image image = shaded_depth(*comparison.mesh, *best.local->tree, result.area, size.width, size.height, threads);
   return captioned(image, fmt::format("{}: as the rays of '{}' see it", comparison.scene, result.area.name),
-                   verdict(report_row(best), report_row(comparison.rows[result.baseline])));
+                   caption(best, comparison.rows[result.baseline]));
 }
 
 Image cost_picture(const Comparison& comparison, const AreaResult& result, unsigned threads) {

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,19 +57,33 @@ Column text_column(const std::string& header, std::span<const ReportRow> rows, s
   return column;
 }
 
-Column value_column(FieldId id, std::span<const ReportRow> rows) {
-  Column column;
-  // One form for a whole column: its decimal points stand below each other.
+/// Digits after the point of a time: three significant ones in all.
+int seconds_decimals(double seconds) {
+  if (!(seconds > 0) || !std::isfinite(seconds)) return 0;
+  return std::clamp(2 - static_cast<int>(std::floor(std::log10(seconds))), 0, 9);
+}
+
+/// The decimals that all cells of a column share, so that their points stand below each other; none for the field's own
+/// form.
+std::optional<int> column_decimals(FieldId id, std::span<const ReportRow> rows) {
+  double largest = 0;
+  for (const ReportRow& row : rows)
+    if (row.values.has(id)) largest = std::max(largest, row.values[id]);
+  if (field(id).unit == "s") return seconds_decimals(largest);
   const bool whole = std::all_of(rows.begin(), rows.end(), [&](const ReportRow& row) {
     return !row.values.has(id) || row.values[id] == std::floor(row.values[id]);
   });
+  if (whole || !field(id).unit.empty() || is_share(field(id))) return std::nullopt;
+  return 2;
+}
+
+Column value_column(FieldId id, std::span<const ReportRow> rows) {
+  Column column;
+  const std::optional<int> decimals = column_decimals(id, rows);
   for (const ReportRow& row : rows) {
-    if (!row.values.has(id))
-      column.cells.push_back("-");
-    else if (!whole && field(id).unit.empty() && !is_share(field(id)))
-      column.cells.push_back(fmt::format("{:.2f}", row.values[id]));
-    else
-      column.cells.push_back(value_text(id, row.values[id]));
+    const bool own_form = !row.values.has(id) || !decimals;
+    column.cells.push_back(own_form ? value_text(id, row.values[id])
+                                    : fmt::format("{:.{}f}", row.values[id], *decimals));
   }
   column.header = wrapped_name(field(id).name, longest(column.cells));
   column.width = std::max(longest(column.header), longest(column.cells));
@@ -105,20 +120,13 @@ std::string bytes_text(double bytes) {
   return fmt::format("{:.1f} MiB", bytes / (1024 * 1024));
 }
 
-/// Three significant digits without an exponent, however small.
-std::string seconds_text(double seconds) {
-  if (seconds <= 0 || !std::isfinite(seconds)) return fmt::format("{:.0f}", seconds);
-  const int decimals = 2 - static_cast<int>(std::floor(std::log10(seconds)));
-  return fmt::format("{:.{}f}", seconds, std::clamp(decimals, 0, 9));
-}
-
 }  // namespace
 
 std::string value_text(FieldId id, double value) {
   const Field& f = field(id);
   if (std::isnan(value)) return "-";
   if (f.unit == "B") return bytes_text(value);
-  if (f.unit == "s") return seconds_text(value);
+  if (f.unit == "s") return fmt::format("{:.{}f}", value, seconds_decimals(value));
   if (is_share(f)) return fmt::format("{:.3f}", value);
   const bool whole = value == std::floor(value) && !contains(f.name, "cost");
   return fmt::format("{:.{}f}", value, whole ? 0 : 2);
