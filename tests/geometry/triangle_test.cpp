@@ -128,7 +128,8 @@ TEST(Triangle, SmallIntegers) {
     const float x = coordinate(), y = coordinate();
     return Vec3{x, y, coordinate()};
   };
-  for (int i = 0; i < 400000; ++i) {
+  const uint64_t rounds = test::seed_count(400000);
+  for (uint64_t i = 0; i < rounds; ++i) {
     const uint64_t size = 1 + random.below(20);
     const Ray ray{point(size), point(size), random.below(2) ? 0 : -kInf, random.below(4) ? kInf : 1};
     if (!is_valid(ray)) continue;
@@ -143,8 +144,8 @@ TEST(Triangle, SmallIntegers) {
       ASSERT_EQ(hit, expected) << i;
     }
   }
-  EXPECT_GT(hits, 20000u);
-  EXPECT_GT(edges, 1000u);
+  EXPECT_GT(hits, rounds / 20);
+  EXPECT_GT(edges, rounds / 400);
 }
 
 struct Pair {
@@ -184,18 +185,20 @@ void expect_same(const Pair& p, size_t& hits) {
 
 TEST(Triangle, FastEqualsExactOnAimedRays) {
   size_t pairs = 0, hits = 0;
-  for (uint64_t seed = 0; seed < 6; ++seed)
+  const uint64_t seeds = test::seed_count(6);
+  for (uint64_t seed = 0; seed < seeds; ++seed)
     for_pairs(seed, 30, 300, [&](const Pair& pair) {
       ++pairs;
       expect_same(pair, hits);
     });
-  EXPECT_GT(pairs, 1000000u);
+  EXPECT_GT(pairs, seeds * 190000);
   EXPECT_GT(hits, pairs / 4);
 }
 
 TEST(Triangle, FastEqualsExactOnAllPairs) {
   size_t pairs = 0, hits = 0;
-  for (uint64_t seed = 10; seed < 13; ++seed)
+  const uint64_t seeds = test::seed_count(4);
+  for (uint64_t seed = 10; seed < 10 + seeds; ++seed)
     for (const test::NamedMesh& family : test::mesh_families(seed)) {
       SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
       const TriangleMesh& mesh = family.mesh;
@@ -203,8 +206,8 @@ TEST(Triangle, FastEqualsExactOnAllPairs) {
         for (size_t i = 0; i < mesh.triangle_count() && is_valid(ray); ++i, ++pairs)
           ASSERT_NO_FATAL_FAILURE(expect_same({ray, mesh.vertex(i, 0), mesh.vertex(i, 1), mesh.vertex(i, 2)}, hits));
     }
-  EXPECT_GT(pairs, 1000000u);
-  EXPECT_GT(hits, 10000u);
+  EXPECT_GT(pairs, seeds * 300000);
+  EXPECT_GT(hits, seeds * 3000);
 }
 
 // Corners that differ by the last bits only, seen from afar: the double-precision filter can decide nothing.
@@ -216,7 +219,8 @@ TEST(Triangle, FastEqualsExactAtTheLimitOfPrecision) {
     const float x = near_one(), y = near_one();
     return Vec3{x, y, near_one()} * scale;
   };
-  for (int i = 0; i < 200000; ++i) {
+  const uint64_t rounds = test::seed_count(200000);
+  for (uint64_t i = 0; i < rounds; ++i) {
     const float scale = std::ldexp(1.0f, static_cast<int>(random.below(250)) - 125);
     const Vec3 origin = random.below(2) ? point(scale) : point(-scale);
     const Vec3 a = point(scale), b = point(scale), c = point(scale);
@@ -224,7 +228,7 @@ TEST(Triangle, FastEqualsExactAtTheLimitOfPrecision) {
     if (!is_valid(ray)) continue;
     ASSERT_NO_FATAL_FAILURE(expect_same({ray, a, b, c}, hits));
   }
-  EXPECT_GT(hits, 10000u);
+  EXPECT_GT(hits, rounds / 20);
 }
 
 // What the definition promises about other ways to say the same thing, bit for bit.
@@ -272,7 +276,7 @@ void expect_identities(const Pair& p) {
 }
 
 TEST(Triangle, Identities) {
-  for (uint64_t seed = 20; seed < 22; ++seed) for_pairs(seed, 10, 60, expect_identities);
+  for (uint64_t seed = 20; seed < 20 + test::seed_count(2); ++seed) for_pairs(seed, 10, 60, expect_identities);
 }
 
 }  // namespace

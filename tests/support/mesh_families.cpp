@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <utility>
 
@@ -227,6 +228,13 @@ std::vector<NamedMesh> mesh_families(uint64_t seed) {
   all.push_back(snapped_soup(150, random));
   all.push_back(mixed_exponents(60, random));
   return all;
+}
+
+uint64_t seed_count(uint64_t usual) {
+  const char* scale = std::getenv("RAYGRAIN_TEST_SCALE");
+  const std::string name = scale ? scale : "";
+  if (name == "full") return 10 * usual;
+  return name == "small" ? std::max<uint64_t>(usual / 4, 1) : usual;
 }
 
 }  // namespace raygrain::test

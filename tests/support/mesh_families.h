@@ -25,4 +25,8 @@ std::vector<NamedMesh> mesh_families(uint64_t seed);
 /// with finite [tmin, tmax], a few invalid (NaN, zero direction).
 std::vector<Ray> aimed_rays(const TriangleMesh& mesh, size_t count, uint64_t seed);
 
+/// How many seeds a property test takes: `usual`, a quarter of it where the environment says RAYGRAIN_TEST_SCALE=small
+/// (instrumented builds), ten times as many for RAYGRAIN_TEST_SCALE=full. At least one.
+uint64_t seed_count(uint64_t usual);
+
 }  // namespace raygrain::test

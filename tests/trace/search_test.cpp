@@ -21,7 +21,7 @@ bool same_bits(const Hit& a, const Hit& b) {
 
 template <class Body>
 void for_families(uint64_t seeds, const Body& body) {
-  for (uint64_t seed = 0; seed < seeds; ++seed)
+  for (uint64_t seed = 0; seed < test::seed_count(seeds); ++seed)
     for (const NamedMesh& family : test::mesh_families(seed)) {
       SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
       body(family.mesh, seed);

@@ -19,7 +19,7 @@ Vec3 between(Vec3 a, Vec3 b, double share) {
 
 template <class Body>
 void for_closed_meshes(uint64_t seeds, const Body& body) {
-  for (uint64_t seed = 0; seed < seeds; ++seed)
+  for (uint64_t seed = 0; seed < test::seed_count(seeds); ++seed)
     for (const NamedMesh& family : test::mesh_families(seed)) {
       if (!family.closed) continue;
       SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
@@ -52,7 +52,7 @@ TEST(Watertight, NoRayLeaksThroughEdgesOrVertices) {
             ASSERT_NO_FATAL_FAILURE(expect_hit(between(mesh.vertex(i, k), mesh.vertex(i, (k + 1) % 3), share)));
     }
   });
-  EXPECT_GT(rays, 200000u);
+  EXPECT_GT(rays, test::seed_count(4) * 50000);
 }
 
 TEST(Watertight, NoRayLeaksAtRandomOrAlongAxes) {
@@ -103,7 +103,7 @@ TEST(Watertight, LinesCrossAnEvenNumberOfTriangles) {
       crossings += count;
     }
   });
-  EXPECT_GT(lines, 3000u);
+  EXPECT_GT(lines, test::seed_count(2) * 1500);
   EXPECT_GT(crossings, lines);
 }
 
