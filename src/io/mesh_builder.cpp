@@ -11,6 +11,17 @@ uint32_t MeshBuilder::vertex(Vec3d position) {
   return static_cast<uint32_t>(mesh_.vertices.size() - 1);
 }
 
+// Declared one by one: the order in which arguments of a call are evaluated is the compiler's.
+void MeshBuilder::triangle(Vec3d a, Vec3d b, Vec3d c) {
+  const uint32_t first = vertex(a), second = vertex(b), third = vertex(c);
+  triangle(first, second, third);
+}
+
+void MeshBuilder::quad(Vec3d a, Vec3d b, Vec3d c, Vec3d d) {
+  const uint32_t first = vertex(a), second = vertex(b), third = vertex(c), fourth = vertex(d);
+  quad(first, second, third, fourth);
+}
+
 void MeshBuilder::quad(uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
   triangle(a, b, c);
   triangle(a, c, d);

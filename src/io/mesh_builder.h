@@ -33,10 +33,10 @@ class MeshBuilder {
  public:
   uint32_t vertex(Vec3d position);
   void triangle(uint32_t a, uint32_t b, uint32_t c) { mesh_.triangles.push_back({a, b, c}); }
-  void triangle(Vec3d a, Vec3d b, Vec3d c) { triangle(vertex(a), vertex(b), vertex(c)); }
+  void triangle(Vec3d a, Vec3d b, Vec3d c);
   /// Two triangles; a, b, c, d run around the face.
   void quad(uint32_t a, uint32_t b, uint32_t c, uint32_t d);
-  void quad(Vec3d a, Vec3d b, Vec3d c, Vec3d d) { quad(vertex(a), vertex(b), vertex(c), vertex(d)); }
+  void quad(Vec3d a, Vec3d b, Vec3d c, Vec3d d);
 
   void block(const Block& block, unsigned faces);
   /// A roof of two slopes and two gables on top of `base`; the ridge runs along x or z. The base itself is left open.
