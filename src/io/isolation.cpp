@@ -51,6 +51,7 @@ using Clock = std::chrono::steady_clock;
 
 // ---- in the child ----
 
+#ifndef RAYGRAIN_SHADOW_MEMORY
 /// What this process has mapped already does not count against the child's limit.
 uint64_t mapped_bytes() {
   std::FILE* file = std::fopen("/proc/self/statm", "re");
@@ -60,6 +61,7 @@ uint64_t mapped_bytes() {
   std::fclose(file);
   return read ? uint64_t{pages} * static_cast<uint64_t>(::sysconf(_SC_PAGESIZE)) : 0;
 }
+#endif
 
 void limit(__rlimit_resource resource, uint64_t soft, uint64_t hard) {
   rlimit limits{};
