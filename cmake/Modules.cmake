@@ -3,13 +3,16 @@
 
 add_library(raygrain_options INTERFACE)
 target_compile_features(raygrain_options INTERFACE cxx_std_20)
-target_compile_options(raygrain_options INTERFACE
-  -Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off
-  $<$<BOOL:${RAYGRAIN_SANITIZE}>:-fsanitize=${RAYGRAIN_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all>
-  $<$<BOOL:${RAYGRAIN_COVERAGE}>:--coverage -O1>)
-target_link_options(raygrain_options INTERFACE
-  $<$<BOOL:${RAYGRAIN_SANITIZE}>:-fsanitize=${RAYGRAIN_SANITIZE}>
-  $<$<BOOL:${RAYGRAIN_COVERAGE}>:--coverage>)
+target_compile_options(raygrain_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off)
+if(RAYGRAIN_SANITIZE)
+  target_compile_options(raygrain_options INTERFACE -fsanitize=${RAYGRAIN_SANITIZE} -fno-omit-frame-pointer
+                                                   -fno-sanitize-recover=all)
+  target_link_options(raygrain_options INTERFACE -fsanitize=${RAYGRAIN_SANITIZE})
+endif()
+if(RAYGRAIN_COVERAGE)
+  target_compile_options(raygrain_options INTERFACE --coverage)
+  target_link_options(raygrain_options INTERFACE --coverage)
+endif()
 target_compile_definitions(raygrain_options INTERFACE
   $<$<OR:$<CONFIG:Debug>,$<BOOL:${RAYGRAIN_CHECKS}>>:RAYGRAIN_CHECKS>
   $<$<BOOL:${RAYGRAIN_STD_THREADS}>:RAYGRAIN_STD_THREADS>)
