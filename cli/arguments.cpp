@@ -91,7 +91,7 @@ void Arguments::two_vectors(const std::string& flags, const std::string& value_n
     target = {parse_vector(name, values.at(0)), parse_vector(name, values.at(1))};
   };
   CLI::Option* option = app_->add_option_function<std::vector<std::string>>(flags, take, help);
-  describe(option->expected(2), value_names, group_);
+  describe(option->type_size(2)->expected(1)->allow_extra_args(false), value_names, group_);
 }
 
 void Arguments::footer(const std::string& text) {

@@ -153,7 +153,8 @@ int run(int argument_count, char** arguments) {
   try {
     program.parse(argument_count, arguments);
   } catch (const CLI::CallForHelp&) {
-    write_standard_output(deepest(program)->help("", CLI::AppFormatMode::Normal));
+    const CLI::App& app = *deepest(program);
+    write_standard_output(app.help(app.get_parent() ? full_name(*app.get_parent()) : ""));
     return kSuccess;
   } catch (const CLI::ParseError& error) {
     throw usage_error(program, error);
