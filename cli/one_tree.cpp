@@ -7,7 +7,7 @@
 
 #include "base/timer.h"
 #include "cli/values.h"
-#include "io/nearest_name.h"
+#include "base/nearest_name.h"
 
 namespace raygrain::cli {
 

@@ -45,7 +45,8 @@ void run_chunks(size_t chunks, unsigned threads, const std::function<void(size_t
 }
 #else
 void run_chunks(size_t chunks, unsigned threads, const std::function<void(size_t)>& run) {
-  tbb::task_arena arena(static_cast<int>(threads));
+  // More threads than processors help nobody, and oneTBB prints a warning about them.
+  tbb::task_arena arena(static_cast<int>(std::min(threads, default_threads())));
   arena.execute([&] { tbb::parallel_for(size_t{0}, chunks, run); });
 }
 #endif

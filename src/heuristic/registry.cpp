@@ -4,6 +4,8 @@
 
 #include "raygrain/error.h"
 
+#include "base/nearest_name.h"
+
 namespace raygrain {
 
 namespace {
@@ -18,41 +20,13 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// Insertions, deletions, replacements and swaps of neighbours: a swap is the commonest slip in names like SPFH.
-size_t edit_distance(std::string_view a, std::string_view b) {
-  const size_t width = b.size() + 1;
-  std::vector<size_t> table((a.size() + 1) * width);
-  for (size_t i = 0; i <= a.size(); ++i)
-    for (size_t j = 0; j <= b.size(); ++j) {
-      size_t& least = table[i * width + j];
-      if (i == 0 || j == 0) {
-        least = i + j;
-        continue;
-      }
-      const size_t above = (i - 1) * width + j, left = i * width + j - 1;
-      least = std::min({table[above] + 1, table[left] + 1, table[above - 1] + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-        least = std::min(least, table[(i - 2) * width + j - 2] + 1);
-    }
-  return table.back();
-}
-
 /// "Did you mean PAH? Known: SAH, PAH, ...".
 template <class Entry>
 std::string hint_for(std::string_view name, const std::vector<Entry>& entries) {
-  constexpr size_t kLongestName = 64;  // nothing longer is a slip of the hand
-  const Entry* nearest = nullptr;
-  size_t least = 0;
-  std::string known;
-  for (const Entry& entry : entries) {
-    known += (known.empty() ? "" : ", ") + entry.name;
-    if (name.size() > kLongestName) continue;
-    const size_t distance = edit_distance(lower(name), lower(entry.name));
-    if (nearest && distance >= least) continue;
-    nearest = &entry;
-    least = distance;
-  }
-  return (nearest ? "Did you mean " + nearest->name + "? " : "") + "Known: " + known;
+  std::vector<std::string_view> names;
+  for (const Entry& entry : entries) names.push_back(entry.name);
+  const std::string_view near = nearest_name(name, names);
+  return (near.empty() ? "" : "Did you mean " + std::string(near) + "? ") + known_names(names);
 }
 
 template <class Entry>

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "io/nearest_name.h"
+#include "base/nearest_name.h"
 #include "io/text.h"
 
 namespace raygrain {

@@ -8,7 +8,7 @@
 #include "raygrain/error.h"
 #include "raygrain/scene.h"
 
-#include "io/nearest_name.h"
+#include "base/nearest_name.h"
 
 namespace raygrain {
 namespace {

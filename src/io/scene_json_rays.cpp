@@ -2,7 +2,7 @@
 #include <filesystem>
 #include <set>
 
-#include "io/nearest_name.h"
+#include "base/nearest_name.h"
 #include "io/scene_json.h"
 
 namespace raygrain {

@@ -7,11 +7,14 @@
 
 namespace raygrain {
 
-/// The name of least edit distance (Levenshtein), the first on a tie; empty when none is near (more than half of the
-/// longer word would change).
+/// The name of least edit distance (insertions, deletions, replacements and swaps of neighbours, whatever the case),
+/// the first on a tie; empty when none is near (more than half of the longer word would change).
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> names);
 
-/// "Did you mean "near"?", or else "Known: a, b, c".
+/// "Known: a, b, c".
+std::string known_names(std::span<const std::string_view> names);
+
+/// "Did you mean "near"?", or else the known names.
 std::string suggestion(std::string_view word, std::span<const std::string_view> names);
 
 }  // namespace raygrain
