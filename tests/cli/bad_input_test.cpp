@@ -84,7 +84,7 @@ std::vector<BadInput> bad_scenes() {
   const std::string triangle = bytes_of(uint8_t{3}, 0, 1, 2), wrong_triangle = bytes_of(uint8_t{3}, 0, 1, 99);
   const std::string vertices = bytes_of(0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f);
   std::string noise;
-  for (int i = 0; i < 2000; ++i) noise += static_cast<char>((i * 2654435761u) >> 13);
+  for (unsigned i = 0; i < 2000; ++i) noise += static_cast<char>((i * 2654435761u) >> 13);
   return {
       {"missing file", {"compare", "/no/such.obj", "--sun", "0,0,1", "--out", "OUT"}, kData, "/no/such.obj"},
       {"folder as scene", {"scene", "info", "/"}, kData, "/"},
