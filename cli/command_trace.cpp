@@ -11,13 +11,13 @@
 #include "raygrain/io.h"
 #include "raygrain/report.h"
 
+#include "base/nearest_name.h"
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "cli/areas.h"
 #include "cli/commands.h"
 #include "cli/open_scene.h"
 #include "cli/values.h"
-#include "io/nearest_name.h"
 
 namespace raygrain::cli {
 

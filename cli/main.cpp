@@ -12,12 +12,12 @@
 #include "raygrain/error.h"
 #include "raygrain/report.h"
 
+#include "base/nearest_name.h"
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/signals.h"
 #include "cli/values.h"
-#include "io/nearest_name.h"
 
 namespace raygrain::cli {
 namespace {

@@ -5,9 +5,9 @@
 #include "raygrain/analyze.h"
 #include "raygrain/rays.h"
 
+#include "base/nearest_name.h"
 #include "base/timer.h"
 #include "cli/values.h"
-#include "base/nearest_name.h"
 
 namespace raygrain::cli {
 
