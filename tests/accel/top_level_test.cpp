@@ -161,7 +161,8 @@ TEST(TopLevel, StopsWhereHomogeneous) {
 
   // Two boxes far apart: empty space between them is one leaf per cell, never split further.
   const std::vector<ConvexRegion> two{box_region({{0, 0, 0}, {1, 1, 1}}), box_region({{15, 15, 15}, {16, 16, 16}})};
-  for (const TopLevel::Node& node : TopLevel(two, {TopLevelKind::kOctree, 5}).nodes()) {
+  const TopLevel sparse(two, {TopLevelKind::kOctree, 5});
+  for (const TopLevel::Node& node : sparse.nodes()) {
     const bool touched = overlaps(two[0], node.bounds) || overlaps(two[1], node.bounds);
     if (!touched) {
       EXPECT_EQ(node.first_child, 0u);
