@@ -1,9 +1,9 @@
 #include "accel/area_families.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <string>
-#include <tuple>
 
 #include "raygrain/rays.h"
 
@@ -174,8 +174,8 @@ std::vector<Ray> rays_from(Vec3 origin, const TriangleMesh& mesh, size_t count, 
 
 void keep_distinct(std::vector<Ray>& rays) {
   std::ranges::sort(rays, {}, bits);
-  const auto rest = std::ranges::unique(rays, {}, bits);
-  rays.erase(rest.begin(), rest.end());
+  const auto equal = [](const Ray& a, const Ray& b) { return bits(a) == bits(b); };
+  rays.erase(std::unique(rays.begin(), rays.end(), equal), rays.end());
 }
 
 }  // namespace raygrain::test
