@@ -5,6 +5,6 @@ program=$1
 out=$2
 scene='procedural:city'
 echo
-echo "raygrain compare $scene --sun 0.35,-0.8,0.48 --rays 10000 --verify --out $out"
+echo "raygrain compare $scene --sun 1,-0.15,0.1 --rays 10000 --verify --out $out"
 echo
-"$program" compare "$scene" --sun 0.35,-0.8,0.48 --rays 10000 --verify --out "$out"
+"$program" compare "$scene" --sun 1,-0.15,0.1 --rays 10000 --verify --out "$out"

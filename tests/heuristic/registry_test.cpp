@@ -86,7 +86,7 @@ const BadRecipe kBadRecipes[] = {
     {"sampeld+ALL", "measure", "Did you mean SAMPLED?"},
     {"PAH+SPHF", "orientation", "Did you mean SPFH? Known: LSPH, SPFH, ALL, ROBIN"},
     {"PAH+", "orientation", "Known: LSPH"},
-    {"PAH+ALL+ALL", "orientation", "Did you mean ALL?"},
+    {"PAH+ALL+ALL", "orientation", "Known: LSPH, SPFH, ALL, ROBIN"},
     {"PAH+ALL@", "builder", "Known: paper, binned"},
     {"PAH+ALL@bined", "builder", "Did you mean binned?"},
     {"PAH+ALL@paper@paper", "builder", "Known: paper, binned"},

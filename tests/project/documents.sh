@@ -15,7 +15,7 @@ done < <(grep -oE '`(include|src|cli|tests|scripts|docs|examples|cmake|bench)/[A
 for page in README.md ARCHITECTURE.md CHANGELOG.md TESTING.md docs/*.md; do
   while IFS= read -r target; do
     [ -e "$(dirname "$page")/$target" ] || complain "$page links to $target, which is not there"
-  done < <(grep -oE '\]\([^)#]+' "$page" | sed 's/^](//' | grep -vE '^https?:' || true)
+  done < <(awk '/^```/ { code = !code } !code' "$page" | grep -oE '\]\([^)#]+' | sed 's/^](//' | grep -vE '^https?:' || true)
 done
 for folder in src/*/; do
   grep -q "src/$(basename "$folder")" ARCHITECTURE.md || complain "ARCHITECTURE.md does not mention $folder"
