@@ -19,9 +19,9 @@ void describe(CLI::Option* option, const std::string& value_name, const std::str
   if (!group.empty()) option->group(group);
 }
 
-CLI::Option* add_text(CLI::App& app, const std::string& flags, std::function<void(const std::string&)> take,
+CLI::Option* add_text(CLI::App& app, const std::string& flags, const std::function<void(const std::string&)>& take,
                       const std::string& help) {
-  return app.add_option_function<std::string>(flags, std::move(take), help);
+  return app.add_option_function<std::string>(flags, take, help);
 }
 
 }  // namespace

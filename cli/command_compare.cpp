@@ -50,7 +50,7 @@ std::vector<std::string> save_files(const Options& options, const Comparison& co
                                     std::span<const ReportRow> rows, std::span<const AreaResult> results,
                                     Progress& progress) {
   const auto save = [&](const std::string& name, const std::string& text) {
-    const std::string path = options.folder + "/" + name;
+    std::string path = options.folder + "/" + name;
     write_file_atomically(path, [&](std::ostream& out) { out << text; });
     return path;
   };

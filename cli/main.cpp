@@ -90,7 +90,8 @@ const CLI::App* deepest(const CLI::App& program) {
 }
 
 std::string full_name(const CLI::App& app) {
-  return app.get_parent() ? full_name(*app.get_parent()) + " " + app.get_name() : app.get_name();
+  const CLI::App* parent = app.get_parent();
+  return parent ? full_name(*parent) + " " + app.get_name() : app.get_name();
 }
 
 std::vector<std::string> known_words(const CLI::App& app, bool options) {
@@ -154,7 +155,8 @@ int run(int argument_count, char** arguments) {
     program.parse(argument_count, arguments);
   } catch (const CLI::CallForHelp&) {
     const CLI::App& app = *deepest(program);
-    write_standard_output(app.help(app.get_parent() ? full_name(*app.get_parent()) : ""));
+    const CLI::App* parent = app.get_parent();
+    write_standard_output(app.help(parent ? full_name(*parent) : ""));
     return kSuccess;
   } catch (const CLI::ParseError& error) {
     throw usage_error(program, error);

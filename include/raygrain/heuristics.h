@@ -22,7 +22,7 @@ RayMeasure directional_measure(Vec3 direction);
 RayMeasure projected_area_measure(const InfluenceArea& area, Culling culling = Culling::kWindow);
 
 /// Counts the sample rays that meet a box (as infinite lines cut to [tmin, tmax]); total = their number.
-RayMeasure sampled_measure(std::vector<Ray> rays);
+RayMeasure sampled_measure(std::span<const Ray> rays);
 
 /// LSPH: quality = extent / longest extent.
 SplitOrientation longest_axis_orientation();

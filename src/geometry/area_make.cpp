@@ -75,7 +75,7 @@ InfluenceArea directional_light_area(const std::string& name, Vec3 direction, co
   plane.half_width = narrow(half.x);
   plane.half_height = narrow(half.y);
   plane.depth = narrow(2 * half.z);
-  const InfluenceArea area{name, plane};
+  InfluenceArea area{name, plane};
   validate(area, name);
   return area;
 }
@@ -106,7 +106,7 @@ InfluenceArea camera_area(const std::string& name, Vec3 eye, Vec3 target, float 
   validate({name, camera}, name);  // before the tangent of half of it
   const double tan_y = tangent(radians(static_cast<double>(fov_y) / 2));
   camera.fov_x = static_cast<float>(2 * arc_tangent(static_cast<double>(aspect) * tan_y) * (180 / kPi));
-  const InfluenceArea area{name, camera};
+  InfluenceArea area{name, camera};
   validate(area, name);
   return area;
 }

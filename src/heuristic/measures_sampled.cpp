@@ -10,7 +10,7 @@ namespace {
 struct SampleRays {
   std::vector<double> origin[3], inverse[3], tmin, tmax;
 
-  explicit SampleRays(const std::vector<Ray>& rays) {
+  explicit SampleRays(std::span<const Ray> rays) {
     for (const Ray& ray : rays) {
       if (!is_valid(ray)) continue;  // meets nothing
       for (int axis = 0; axis < 3; ++axis) {
@@ -44,7 +44,7 @@ struct SampleRays {
 
 }  // namespace
 
-RayMeasure sampled_measure(std::vector<Ray> rays) {
+RayMeasure sampled_measure(std::span<const Ray> rays) {
   const auto samples = std::make_shared<const SampleRays>(rays);
   return RayMeasure([samples](const Bounds& box) { return static_cast<float>(samples->count_hits(box)); },
                     static_cast<float>(rays.size()));

@@ -24,6 +24,7 @@ std::string lower(std::string_view text) {
 template <class Entry>
 std::string hint_for(std::string_view name, const std::vector<Entry>& entries) {
   std::vector<std::string_view> names;
+  names.reserve(entries.size());
   for (const Entry& entry : entries) names.push_back(entry.name);
   const std::string_view near = nearest_name(name, names);
   return (near.empty() ? "" : "Did you mean " + std::string(near) + "? ") + known_names(names);
@@ -55,9 +56,7 @@ std::vector<MeasureEntry> default_measures() {
        [](const HeuristicInput& input) { return projected_area_measure(*input.area, Culling::kNone); }},
       {"DIR", "projected area along one direction as three face weights", true, false, make_directional},
       {"SAMPLED", "sample rays that meet the box", false, true,
-       [](const HeuristicInput& input) {
-         return sampled_measure(std::vector<Ray>(input.samples.begin(), input.samples.end()));
-       }},
+       [](const HeuristicInput& input) { return sampled_measure(input.samples); }},
   };
 }
 
