@@ -25,7 +25,7 @@ build: dependencies ## install what is needed, build library and program into bu
 	@cmake --build $(RELEASE) -j $(JOBS) --target raygrain raygrain_cli
 	@echo "The program is $(RELEASE)/bin/raygrain"
 
-demo: build      ## build, then compare the paper's heuristics on a built-in city under a high sun
+demo: build      ## build, then compare the paper's heuristics on a built-in city under a low sun
 	@scripts/demo.sh $(RELEASE)/bin/raygrain build/demo
 
 test: dependencies ## everything a commit must pass: sanitizers on the core, then all tests in release

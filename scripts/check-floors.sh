@@ -34,6 +34,9 @@ cd "${1:-$(dirname "$0")/..}"
     if (self ~ /^\?/ || !(self in floor)) { print FILENAME ": belongs to no floor; add it to scripts/check-floors.sh"; bad = 1; nextfile }
     if (!(other in floor)) { print FILENAME ":" FNR ": \"" target "\" belongs to no floor"; bad = 1; next }
     checked++
+    if (self == "build" && target ~ /^raygrain\/(ray|mesh|area|region|frame|triangle)\.h$/) {
+      print FILENAME ":" FNR ": builders see boxes and centroids only, not " target; bad = 1
+    }
     if (other == self || floor[other] < floor[self]) next
     print FILENAME ":" FNR ": " self " (floor " floor[self] ") includes " target " of " other " (floor " floor[other] ")"
     bad = 1

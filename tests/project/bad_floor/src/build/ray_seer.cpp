@@ -1,0 +1,2 @@
+// A fixture: builders must not see rays.
+#include "raygrain/ray.h"
