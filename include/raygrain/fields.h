@@ -54,6 +54,7 @@ enum class FieldId : size_t {
   kTraceSeconds,
   kMismatches,
   kRays,
+  kServedRays,
   kRealCostDeviation,
   kLocalMissCost,
   kTopLevelNodes,

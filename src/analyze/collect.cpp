@@ -46,7 +46,7 @@ void set_build(FieldValues& values, const BuildStats& build) {
 }
 
 void set_trace(FieldValues& values, const TraceStats& trace) {
-  values[kRays] = number(trace.rays);
+  values[kRays] = values[kServedRays] = number(trace.rays);
   values[kRealCost] = trace.real_cost;
   values[kRealCostDeviation] = trace.real_cost_deviation;
   values[kPrunedCost] = trace.pruned_cost;
@@ -58,6 +58,7 @@ void set_trace(FieldValues& values, const TraceStats& trace) {
 
 void set_fallback(FieldValues& values, const FallbackStats& fallback) {
   values[kRays] = number(fallback.rays);
+  if (!values.has(kServedRays)) values[kServedRays] = number(fallback.served);
   values[kCostWithFallback] = fallback.cost_with_fallback;
   values[kGlobalCost] = fallback.global_cost;
   values[kLocalMissCost] = fallback.local_miss_cost;

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "raygrain/analyze.h"
 
 #include "analyze/node_facts.h"
@@ -26,7 +28,7 @@ void append_place(std::vector<double>& row, const NodeVisit& visit) {
 }
 
 void append_price(std::vector<double>& row, const Bvh::Node& node, float measure, float total, const CostModel& costs) {
-  const double probability = static_cast<double>(conditional_probability(measure, total));
+  const double probability = total > 0 ? std::min(static_cast<double>(measure) / static_cast<double>(total), 1.0) : 0.0;
   row.insert(row.end(), {static_cast<double>(measure), probability, probability * node_price(node, costs)});
 }
 

@@ -2,6 +2,7 @@
 
 #include "raygrain/analyze.h"
 
+#include "accel/estimate.h"
 #include "analyze/node_facts.h"
 
 namespace raygrain {
@@ -40,13 +41,9 @@ TreeStats analyze(const Bvh& bvh, const RayMeasure& measure, const CostModel& co
   if (bvh.nodes.empty()) return stats;
   const std::vector<uint32_t> levels = node_levels(bvh);
   const std::vector<float> measures = node_measures(bvh, measure);
-  const float total = measure.total(bvh.nodes[0].bounds);
-  for (size_t i = 0; i < bvh.nodes.size(); ++i) {
-    const Bvh::Node& node = bvh.nodes[i];
-    const float probability = conditional_probability(measures[i], total);
-    stats.estimated_cost += static_cast<double>(probability) * node_price(node, costs);
-    if (node.is_leaf()) add_leaf(stats, node, levels[i]);
-  }
+  for (size_t i = 0; i < bvh.nodes.size(); ++i)
+    if (bvh.nodes[i].is_leaf()) add_leaf(stats, bvh.nodes[i], levels[i]);
+  stats.estimated_cost = estimated_cost(bvh, measure, costs);
   stats.nodes = bvh.nodes.size();
   stats.triangles_per_leaf = static_cast<double>(stats.triangles) / static_cast<double>(stats.leaves);
   stats.mean_leaf_depth /= static_cast<double>(stats.leaves);

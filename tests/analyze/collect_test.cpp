@@ -38,6 +38,8 @@ TEST(CollectFields, EveryMetricOfATreeFindsItsField) {
   EXPECT_EQ(all[FieldId::kLeafTriangles], trace.leaf_triangles);
   EXPECT_EQ(all[FieldId::kCostWithFallback], fallback.cost_with_fallback);
   EXPECT_EQ(all[FieldId::kHitRatio], fallback.hit_ratio);
+  EXPECT_EQ(all[FieldId::kRays], static_cast<double>(fallback.rays));
+  EXPECT_EQ(all[FieldId::kServedRays], static_cast<double>(trace.rays)) << "what the deviation is of";
   EXPECT_EQ(all[FieldId::kBreakEvenHitRatio], fallback.break_even);
   std::vector<double> seen;
   for (size_t i = 0; i < fields().size(); ++i) {
@@ -58,6 +60,9 @@ TEST(CollectFields, WhatWasNotMeasuredStaysEmpty) {
   EXPECT_FALSE(values.has(FieldId::kBuildSeconds));
   EXPECT_FALSE(values.has(FieldId::kRealCost));
   EXPECT_FALSE(values.has(FieldId::kHitRatio));
+  FallbackStats fallback;
+  fallback.served = 3;
+  EXPECT_EQ(collect_fields(TreeStats{}, nullptr, nullptr, nullptr, &fallback)[FieldId::kServedRays], 3);
   TraceStats trace;
   trace.hit_ratio = 0.25;
   EXPECT_EQ(collect_fields(TreeStats{}, nullptr, nullptr, &trace, nullptr)[FieldId::kHitRatio], 0.25);

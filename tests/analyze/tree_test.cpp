@@ -3,6 +3,7 @@
 #include "raygrain/analyze.h"
 #include "raygrain/heuristics.h"
 
+#include "accel/estimate.h"
 #include "analyze/small_scenes.h"
 
 namespace raygrain {
@@ -48,6 +49,15 @@ TEST(TreeStats, MeasureOfNothingCostsNothing) {
   EXPECT_EQ(stats.estimated_cost, 0);
   EXPECT_EQ(stats.small_child_ratio, 0);
   EXPECT_EQ(stats.large_child_ratio, 0);
+}
+
+// The accelerator orders areas by the same number.
+TEST(TreeStats, EstimateIsTheAccelerators) {
+  const auto thirds = [](const Bounds& box) { return extent(box).x / 3; };
+  for (const float total : {3.0f, 7.0f, 11.0f, 13.3f}) {
+    const RayMeasure measure(thirds, total);
+    EXPECT_EQ(analyze(test::five_nodes(), measure).estimated_cost, estimated_cost(test::five_nodes(), measure));
+  }
 }
 
 TEST(TreeStats, SmallestTrees) {
