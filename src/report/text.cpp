@@ -155,6 +155,7 @@ std::string text_table(std::span<const ReportRow> rows, std::span<const FieldId>
 std::string verdict(const ReportRow& best, const ReportRow& baseline) {
   const auto cost = [](const ReportRow& row) { return row.values[FieldId::kPrunedCost]; };
   const std::string start = best.area.empty() ? "" : best.area + ": ";
+  if (best.values[FieldId::kTriangles] == 0) return start + "no triangle lies in this area.";
   if (best.name == baseline.name || !(cost(baseline) > 0))
     return fmt::format("{}{} is best, at a cost of {:.2f} per ray.", start, best.name, cost(best));
   const double ratio = cost(best) / cost(baseline);

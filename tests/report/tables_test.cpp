@@ -84,6 +84,12 @@ TEST(Verdict, NamesBothRowsAndTheirRatio) {
   EXPECT_NE(verdict(same, same).find("SAH+LSPH is best"), std::string::npos);
 }
 
+TEST(Verdict, NothingIsBestWhereNothingIs) {
+  ReportRow row = make_row("SAH+LSPH", "far", 0);
+  row.values[FieldId::kTriangles] = 0;
+  EXPECT_EQ(verdict(row, row), "far: no triangle lies in this area.");
+}
+
 TEST(CsvTable, QuotesWhatNeedsIt) {
   const ReportRow rows[] = {make_row("a,\"b\"", "two\nlines", 1)};
   const std::string text = csv_table(rows, kColumns);
