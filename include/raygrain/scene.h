@@ -18,12 +18,15 @@ namespace raygrain {
 struct RaySet {
   std::string name;
   std::variant<AreaRays, SurfaceRays, CameraRays, std::vector<Ray>> source;
-  size_t count = 10000;
+  size_t count = 10000;  // for areas and surfaces: a camera has a ray per pixel, and a list what it holds
   uint64_t seed = 1;
 };
 
 /// The set's rays (surface rays need the mesh).
 std::vector<Ray> make_rays(const RaySet& set, const TriangleMesh& mesh);
+
+/// How many rays make_rays gives, without making them; surface rays may be none where the mesh has no area.
+size_t ray_count(const RaySet& set);
 
 struct Scene {
   std::string name;

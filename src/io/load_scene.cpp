@@ -60,4 +60,10 @@ std::vector<Ray> make_rays(const RaySet& set, const TriangleMesh& mesh) {
   return std::visit(Maker{set, mesh}, set.source);
 }
 
+size_t ray_count(const RaySet& set) {
+  if (const auto* camera = std::get_if<CameraRays>(&set.source)) return size_t{camera->width} * camera->height;
+  if (const auto* rays = std::get_if<std::vector<Ray>>(&set.source)) return rays->size();
+  return set.count;
+}
+
 }  // namespace raygrain

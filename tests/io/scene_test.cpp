@@ -217,6 +217,13 @@ TEST(SceneJson, ProceduralBringsItsOwnAreasUnlessOthersAreGiven) {
   EXPECT_TRUE(other.ray_sets.empty());
 }
 
+TEST(RayCount, IsWhatMakeRaysGives) {
+  Scene scene = rich_scene();
+  scene.ray_sets.push_back({"view", CameraRays{{0, 0, 9}, {0, 0, 0}, {0, 1, 0}, 60, 32, 20}});
+  scene.ray_sets.push_back({"list", std::vector<Ray>(7)});
+  for (const RaySet& set : scene.ray_sets) EXPECT_EQ(ray_count(set), make_rays(set, scene.mesh).size()) << set.name;
+}
+
 TEST(SceneJson, RaysOfAFile) {
   const SceneFile file;
   const std::vector<Ray> rays{{{0.1f, 2, 3}, {0, 0, -1}}, {{1, 1, 1}, {0, 1, 0}, 0.5f, 2}};
