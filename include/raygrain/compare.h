@@ -1,6 +1,7 @@
 // The main job: trees of several recipes for the same areas and rays, checked against each other, side by side.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -53,7 +54,12 @@ std::vector<Recipe> paper_recipes();
 /// `verify`). Throws Error (kUsage) for a scene without areas.
 Comparison compare(const Scene& scene, const CompareOptions& options);
 
-/// Index into `rows` of the best recipe of an area by pruned cost, then real cost, then order.
-size_t best_row(const Comparison& comparison, const std::string& area);
+/// The 1000 rays of an area that recipes with samples (SAMPLED) are given: others than cast_rays gives for this seed,
+/// so that no tree is measured with the rays that it was built for.
+std::vector<Ray> sample_rays(const InfluenceArea& area, uint64_t seed);
+
+/// Index into `rows` of the best recipe of an area by pruned cost, then real cost, then order; the row `except` does
+/// not compete. Throws Error (kNotFound) where there is none.
+size_t best_row(const Comparison& comparison, const std::string& area, size_t except = SIZE_MAX);
 
 }  // namespace raygrain

@@ -9,11 +9,16 @@
 
 namespace raygrain {
 
-std::vector<Hit> find_hits(std::span<const Ray> rays, const Search& search, unsigned threads) {
+std::vector<Hit> find_hits(std::span<const Ray> rays, const Search& search, unsigned threads,
+                           const std::function<void(double part)>& tell) {
   std::vector<Hit> hits(rays.size());
-  parallel_for(rays.size(), 64, threads, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) hits[i] = search(rays[i]);
-  });
+  const size_t piece = tell ? 256 : rays.size(), grain = tell ? 8 : 64;
+  for (size_t start = 0; start < rays.size(); start += piece) {
+    if (tell) tell(static_cast<double>(start) / static_cast<double>(rays.size()));
+    parallel_for(std::min(piece, rays.size() - start), grain, threads, [&](size_t begin, size_t end) {
+      for (size_t i = start + begin; i < start + end; ++i) hits[i] = search(rays[i]);
+    });
+  }
   return hits;
 }
 

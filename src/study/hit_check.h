@@ -11,8 +11,10 @@ namespace raygrain {
 
 using Search = std::function<Hit(const Ray&)>;  // safe to call from several threads
 
-/// The hit of each ray.
-std::vector<Hit> find_hits(std::span<const Ray> rays, const Search& search, unsigned threads);
+/// The hit of each ray. For slow searches `tell` hears which part is done, from this thread; without it all rays are
+/// searched in one go.
+std::vector<Hit> find_hits(std::span<const Ray> rays, const Search& search, unsigned threads,
+                           const std::function<void(double part)>& tell = {});
 
 /// Equal in every bit?
 bool is_same_hit(const Hit& a, const Hit& b);

@@ -16,8 +16,14 @@ class Progress {
 
   /// Announces the next step. Throws Error (kCancelled) when the callback returns false.
   void begin(const std::string& step) {
-    const double done = static_cast<double>(begun_++) / static_cast<double>(steps_);
-    if (callback_ && !callback_(step, done)) throw Error(ErrorCode::kCancelled, step, "cancelled");
+    step_ = step;
+    ++begun_;
+    advance(0);
+  }
+  /// A part of the current step is done, in [0, 1]. Throws Error (kCancelled) as begin does.
+  void advance(double part) {
+    const double done = (static_cast<double>(begun_) - 1 + part) / static_cast<double>(steps_);
+    if (callback_ && !callback_(step_, done)) throw Error(ErrorCode::kCancelled, step_, "cancelled");
   }
   /// All steps are done.
   void finish() {
@@ -28,6 +34,7 @@ class Progress {
  private:
   const Callback& callback_;
   size_t steps_, begun_ = 0;
+  std::string step_;
 };
 
 }  // namespace raygrain

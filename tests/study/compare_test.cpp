@@ -221,7 +221,19 @@ TEST(BestRow, PrunedThenRealThenOrder) {
   add("a", 4, 8);
   EXPECT_EQ(best_row(comparison, "a"), 3u);
   EXPECT_EQ(best_row(comparison, "b"), 1u);
+  EXPECT_EQ(best_row(comparison, "a", 3), 4u);
   EXPECT_THROW(best_row(comparison, "c"), Error);
+  EXPECT_THROW(best_row(comparison, "b", 1), Error);
+}
+
+TEST(SampleRays, AreNoneOfThoseTraced) {
+  const InfluenceArea area = generate_scene({"random100"}).areas.at(0);
+  for (uint64_t seed = 0; seed < 2000; ++seed) {
+    SCOPED_TRACE(seed);
+    const std::vector<Ray> samples = sample_rays(area, 1), traced = cast_rays(AreaRays{.area = area}, 2, seed);
+    ASSERT_EQ(samples.size(), 1000u);
+    ASSERT_NE(samples[0].origin, traced[0].origin);
+  }
 }
 
 TEST(PaperRecipes, NamesAndPreset) {

@@ -45,6 +45,30 @@ TEST(HitCheck, FindsHitsInOrderForAnyThreads) {
   }
 }
 
+TEST(HitCheck, TellsPartsOfSlowSearches) {
+  std::vector<Ray> rays(1000);
+  for (size_t i = 0; i < rays.size(); ++i) rays[i].tmin = static_cast<float>(i);
+  std::vector<double> parts;
+  const auto search = [](const Ray& ray) { return Hit{ray.tmin, 0, 0, 1}; };
+  const auto hits = find_hits(rays, search, 2, [&](double part) { parts.push_back(part); });
+  EXPECT_EQ(parts, (std::vector<double>{0, 0.256, 0.512, 0.768}));
+  for (size_t i = 0; i < rays.size(); ++i) ASSERT_EQ(hits[i].t, rays[i].tmin);
+}
+
+TEST(Progress, AdvancesWithinAStep) {
+  std::vector<double> done;
+  const Progress::Callback callback = [&](const std::string&, double d) {
+    done.push_back(d);
+    return true;
+  };
+  Progress progress(callback, 2);
+  progress.begin("a");
+  progress.advance(0.5);
+  progress.begin("b");
+  progress.finish();
+  EXPECT_EQ(done, (std::vector<double>{0, 0.25, 0.5, 1}));
+}
+
 TEST(Progress, CountsUpAndCancels) {
   std::vector<double> done;
   const Progress::Callback callback = [&](const std::string&, double d) {
