@@ -54,11 +54,14 @@ PolygonMesh read_polygons(const std::string& path, const std::string& ending) {
   return import_with_assimp(path);
 }
 
+std::string counted(size_t count, const char* what) {
+  return std::to_string(count) + what + (count == 1 ? "" : "s");
+}
+
 [[noreturn]] void refuse_no_triangles(const std::string& path, const LoadReport& report) {
   std::string message = "has no triangles";
   if (report.dropped_lines + report.dropped_points > 0)
-    message += ", only " + std::to_string(report.dropped_lines) + " lines and " +
-               std::to_string(report.dropped_points) + " points";
+    message += ", only " + counted(report.dropped_lines, " line") + " and " + counted(report.dropped_points, " point");
   throw Error(ErrorCode::kBadMesh, path, message, "raygrain needs a surface");
 }
 

@@ -19,6 +19,10 @@ class ObjReader {
   PolygonMesh read() {
     if (rest_.starts_with("\xef\xbb\xbf")) rest_.remove_prefix(3);
     while (next_line()) read_statement();
+    if (mesh_.sizes.empty() && unknown_line_ > 0)
+      throw Error(ErrorCode::kBadMesh, place(path_, unknown_line_),
+                  in_quotes(unknown_) + " was not understood, and the file has no triangles",
+                  "faces look like: f 1 2 3");
     if (highest_ > mesh_.vertices.size()) refuse_index(std::to_string(highest_), highest_line_);
     return std::move(mesh_);
   }
@@ -81,6 +85,20 @@ class ObjReader {
       mesh_.dropped.dropped_lines += std::max<size_t>(count_tokens(), 2) - 1;
     else if (keyword == "p")
       mesh_.dropped.dropped_points += count_tokens();
+    else if (unknown_line_ == 0 && !is_known(keyword))
+      note_unknown(keyword);
+  }
+
+  /// What a file of words is no mesh for.
+  void note_unknown(std::string_view keyword) {
+    unknown_line_ = line_number_;
+    unknown_ = std::string(keyword) + std::string(line_.substr(0, 40));
+  }
+
+  static bool is_known(std::string_view keyword) {
+    constexpr std::string_view kIgnored[] = {"",       "vt",     "vn",     "vp",     "g",   "o",    "s",    "mg",
+                                             "mtllib", "usemtl", "usemap", "maplib", "lod", "curv", "surf", "end"};
+    return std::find(std::begin(kIgnored), std::end(kIgnored), keyword) != std::end(kIgnored);
   }
 
   size_t count_tokens() {
@@ -143,6 +161,8 @@ class ObjReader {
   const std::string& path_;
   size_t line_number_ = 0, lines_read_ = 0;
   size_t highest_ = 0, highest_line_ = 0;  // of all indices counted from 1
+  size_t unknown_line_ = 0;                // the first that says nothing known; 0: none
+  std::string unknown_;
   PolygonMesh mesh_;
 };
 

@@ -137,7 +137,7 @@ std::vector<Row> obj_rows() {
           {"no faces", ".obj", kObj, kBadMesh, "no triangles"},
           {"garbage", ".obj", "this is not a mesh\n", kBadMesh, "no triangles"},
           {"binary", ".obj", std::string("v 0 0 0\n\0\1\2\3", 12), kMalformed, "not a text file"},
-          {"only lines", ".obj", kObj + "l 1 2 3\np 1\n", kBadMesh, "only 2 lines and 1 points"},
+          {"only lines", ".obj", kObj + "l 1 2 3\np 1\n", kBadMesh, "only 2 lines and 1 point"},
           {"index too large", ".obj", kObj + "f 1 2 4\n", kBadMesh, "vertex 4 of 3"},
           {"index zero", ".obj", kObj + "f 0 1 2\n", kBadMesh, "vertex 0 of 3"},
           {"index too negative", ".obj", kObj + "f -4 1 2\n", kBadMesh, "vertex -4 of 3"},
