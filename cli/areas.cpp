@@ -37,22 +37,25 @@ void check_camera(const std::pair<Vec3, Vec3>& camera) {
     fail_usage("--camera", "the eye and the target are the same point", "Move one of them");
 }
 
-std::vector<InfluenceArea> with_triangles(std::vector<InfluenceArea> areas, const Scene& scene, const Output& output) {
-  std::string dropped;
-  std::erase_if(areas, [&](const InfluenceArea& area) {
-    if (!area_members(scene.mesh, AreaGeometry(area)).empty()) return false;
-    dropped += (dropped.empty() ? "" : ", ") + area.name;
-    return true;
+std::vector<InfluenceArea> given_areas(const AreaOptions& options, const Scene& scene) {
+  const Bounds box = mesh_bounds(scene.mesh);
+  if (!options.file.empty()) return load_areas(options.file, box);
+  if (options.sun)
+    return from_option("--sun", [&] { return std::vector{directional_light_area("sun", *options.sun, box)}; });
+  if (options.light) return from_option("--light", [&] { return point_light_areas("light", *options.light, box); });
+  if (!options.camera) return scene.areas;
+  return from_option("--camera", [&] {
+    const auto& [eye, target] = *options.camera;
+    return std::vector{camera_area("camera", eye, target, options.field_of_view.value_or(kDefaultFieldOfView),
+                                   options.aspect.value_or(kDefaultAspect), box)};
   });
-  if (!dropped.empty()) output.note(fmt::format("Left out, as no triangle lies there: {}\n", dropped));
-  return areas;
 }
 
 }  // namespace
 
 void add_area_options(Arguments& arguments, AreaOptions& options) {
   arguments.group("Influence areas (without any: the scene's own)");
-  arguments.text("--areas", "FILE.json", options.file,
+  arguments.file("--areas", "FILE.json", options.file,
                  "Areas of a JSON file (format raygrain-areas), or of a scene.json");
   arguments.vector("--sun", options.sun,
                    "Parallel light over the whole scene; X,Y,Z is the direction in which it travels");
@@ -81,23 +84,23 @@ void check_area_options(const AreaOptions& options) {
 }
 
 std::vector<InfluenceArea> choose_areas(const AreaOptions& options, const Scene& scene, const Output& output) {
-  const Bounds box = mesh_bounds(scene.mesh);
-  if (!options.file.empty()) return load_areas(options.file, box);
-  if (options.sun)
-    return from_option("--sun", [&] { return std::vector{directional_light_area("sun", *options.sun, box)}; });
-  if (options.light)
-    return from_option("--light",
-                       [&] { return with_triangles(point_light_areas("light", *options.light, box), scene, output); });
-  if (!options.camera) return scene.areas;
-  return from_option("--camera", [&] {
-    const auto& [eye, target] = *options.camera;
-    return std::vector{camera_area("camera", eye, target, options.field_of_view.value_or(kDefaultFieldOfView),
-                                   options.aspect.value_or(kDefaultAspect), box)};
+  std::vector<InfluenceArea> areas = given_areas(options, scene);
+  std::string dropped;
+  std::erase_if(areas, [&](const InfluenceArea& area) {
+    if (!area_members(scene.mesh, AreaGeometry(area)).empty()) return false;
+    dropped += (dropped.empty() ? "" : ", ") + area.name;
+    return true;
   });
+  if (!dropped.empty()) output.note(fmt::format("Left out, as no triangle lies there: {}\n", dropped));
+  return areas;
 }
 
-void fail_without_areas(const std::string& scene) {
-  fail_usage(scene, "has no influence areas of its own",
+void fail_without_areas(const AreaOptions& options, const Scene& scene, const std::string& name) {
+  const bool given = !options.file.empty() || options.sun || options.light || options.camera;
+  if (given || !scene.areas.empty())
+    throw Error(ErrorCode::kBadArea, options.file.empty() ? name : options.file,
+                "no triangle lies in the influence areas", "Move or enlarge the areas: see raygrain scene info");
+  fail_usage(name, "has no influence areas of its own",
              "Add --sun X,Y,Z (direction of the light), --light X,Y,Z, --camera EYE TARGET or --areas FILE.json");
 }
 

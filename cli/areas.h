@@ -24,11 +24,12 @@ void add_area_options(Arguments& arguments, AreaOptions& options);
 /// Throws Error (kUsage) for options that exclude each other. Needs no scene, so it can come first.
 void check_area_options(const AreaOptions& options);
 
-/// The areas asked for, or else the scene's own (perhaps none). Those of a light that hold no triangle are left out,
-/// with a note. Throws Error.
+/// The areas asked for, or else the scene's own (perhaps none). Those that hold no triangle are left out, with a note.
+/// Throws Error.
 std::vector<InfluenceArea> choose_areas(const AreaOptions& options, const Scene& scene, const Output& output);
 
-/// Throws Error (kUsage) that shows the options, for a scene without areas.
-[[noreturn]] void fail_without_areas(const std::string& scene);
+/// For when choose_areas left none: throws Error (kUsage) that shows the options, or Error (kBadArea) where all areas
+/// are empty. `name` is the scene's on the command line.
+[[noreturn]] void fail_without_areas(const AreaOptions& options, const Scene& scene, const std::string& name);
 
 }  // namespace raygrain::cli

@@ -27,7 +27,11 @@ CLI::Option* add_text(CLI::App& app, const std::string& flags, const std::functi
 }  // namespace
 
 void Arguments::operand(const std::string& name, std::string& target, const std::string& help) {
-  describe(app_->add_option(name, target, help)->required(), "", group_);
+  const auto take = [&target, name](const std::string& value) {
+    if (value.empty()) fail_usage(name, "is empty", "Give its name, or see --help");
+    target = value;
+  };
+  describe(add_text(*app_, name, take, help)->required(), "", group_);
 }
 
 void Arguments::text(const std::string& flags, const std::string& value_name, std::string& target,
@@ -39,9 +43,17 @@ void Arguments::text(const std::string& flags, const std::string& value_name, st
   describe(add_text(*app_, flags, take, help), value_name, group_);
 }
 
-void Arguments::required_text(const std::string& flags, const std::string& value_name, std::string& target,
-                              const std::string& help) {
-  text(flags, value_name, target, help);
+void Arguments::file(const std::string& flags, const std::string& value_name, std::string& target,
+                     const std::string& help) {
+  const auto take = [&target, name = long_name(flags)](const std::string& value) {
+    if (value.empty()) fail_usage(name, "is empty", "Give a name after it");
+    if (value == "-") fail_usage(name, "needs a file: only --json takes - for standard output", "Give a name after it");
+    target = value;
+  };
+  describe(add_text(*app_, flags, take, help), value_name, group_);
+}
+
+void Arguments::require(const std::string& flags) {
   app_->get_option(long_name(flags))->required();
 }
 

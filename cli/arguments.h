@@ -27,8 +27,10 @@ class Arguments {
 
   void operand(const std::string& name, std::string& target, const std::string& help);
   void text(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);
-  void required_text(const std::string& flags, const std::string& value_name, std::string& target,
-                     const std::string& help);
+  /// The name of a file or folder. "-" is refused, so that none of that name is made.
+  void file(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);
+  /// The option with these flags must be given.
+  void require(const std::string& flags);
   /// Comma-separated, may be repeated.
   void list(const std::string& flags, const std::string& value_name, std::vector<std::string>& target,
             const std::string& help);

@@ -84,6 +84,7 @@ int analyze_tree(const Options& options) {
   const std::vector<InfluenceArea> areas = choose_areas(options.tree.areas, scene, output);
   const OneTree tree = build_one_tree(options.tree, scene, areas, progress);
 
+  progress.show("measure the tree", 0.3);
   ReportRow row = tree.row();
   progress.show("trace rays", 0.5);
   if (tree.area) add_rays(row.values, tree, scene, options);
@@ -105,7 +106,7 @@ Action declare_analyze(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   add_tree_options(arguments, options->tree);
   arguments.whole("--rays", options->rays, {1, kMostRays}, "Rays of the area to trace");
-  arguments.text("--nodes", "FILE.csv", options->nodes, "Write a row for each node");
+  arguments.file("--nodes", "FILE.csv", options->nodes, "Write a row for each node");
   add_common(arguments, options->tree.common);
   return [options] { return analyze_tree(*options); };
 }

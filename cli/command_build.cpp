@@ -26,10 +26,12 @@ int build(const Options& options) {
   const Scene scene = open_scene(options.tree.scene, progress);
   const OneTree tree = build_one_tree(options.tree, scene, choose_areas(options.tree.areas, scene, output), progress);
 
+  progress.show("measure the tree", 0.5);
   const ReportRow row = tree.row();
   const std::string json =
       rows_json(scene.name, scene.mesh.triangle_count(), options.tree.seed, options.tree.common, {&row, 1});
   save_tree_json(*tree.tree, json, options.output);
+  progress.erase();
   output.save_json(json);
   output.print(
       fmt::format("{}, {}{}\n{}", scene.name, row.name, row.area.empty() ? "" : " for " + row.area, row_listing(row)));
@@ -42,7 +44,8 @@ int build(const Options& options) {
 Action declare_build(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   add_tree_options(arguments, options->tree);
-  arguments.required_text("-o,--output", "TREE.json", options->output, "Where to write the tree");
+  arguments.file("-o,--output", "TREE.json", options->output, "Where to write the tree");
+  arguments.require("--output");
   add_common(arguments, options->tree.common);
   return [options] { return build(*options); };
 }

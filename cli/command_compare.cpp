@@ -92,8 +92,9 @@ int compare_scene(const Options& options) {
   Progress progress(!options.common.quiet);
   const CompareOptions work = compare_options(options, progress);
   Scene scene = open_scene(options.scene, progress);
-  scene.areas = choose_areas(options.areas, scene, output);
-  if (scene.areas.empty()) fail_without_areas(options.scene);
+  std::vector<InfluenceArea> areas = choose_areas(options.areas, scene, output);
+  if (areas.empty()) fail_without_areas(options.areas, scene, options.scene);
+  scene.areas = std::move(areas);
   if (!options.folder.empty()) make_output_folder(options.folder);
 
   const Comparison comparison = compare(scene, work);
@@ -125,7 +126,7 @@ Action declare_compare(Arguments& arguments) {
   arguments.whole("--rays", options->rays, {1, kMostRays}, "Rays per area");
   arguments.whole("--seed", options->seed, {}, "Of the rays");
   arguments.flag("--verify", options->verify, "Check every hit against brute force, too (slow)");
-  arguments.text("--out", "DIR", options->folder, "Write compare.json, compare.csv and pictures into this folder");
+  arguments.file("--out", "DIR", options->folder, "Write compare.json, compare.csv and pictures into this folder");
   add_common(arguments, options->common);
   arguments.footer("Every hit is checked against an independent tree; any difference ends with exit code 1.");
   return [options] { return compare_scene(*options); };

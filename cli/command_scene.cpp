@@ -46,7 +46,7 @@ std::string info_json(const Scene& scene) {
             {"areas", Json::array()},
             {"ray_sets", Json::array()}};
   for (const InfluenceArea& area : scene.areas) info["areas"].push_back(area_json(area));
-  for (const RaySet& set : scene.ray_sets) info["ray_sets"].push_back(set.name);
+  for (const RaySet& set : scene.ray_sets) info["ray_sets"].push_back({{"name", set.name}, {"count", ray_count(set)}});
   return info.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -60,6 +60,10 @@ std::string area_text(const InfluenceArea& area) {
                      point.eye.z, point.fov_x, point.fov_y);
 }
 
+std::string counted(size_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 std::string info_text(const Scene& scene) {
   const Bounds box = mesh_bounds(scene.mesh);
   std::string text = fmt::format("{}: {} triangles, {} vertices\n", scene.name, scene.mesh.triangle_count(),
@@ -67,10 +71,10 @@ std::string info_text(const Scene& scene) {
   text += fmt::format("  from {:g},{:g},{:g} to {:g},{:g},{:g}\n", box.lo.x, box.lo.y, box.lo.z, box.hi.x, box.hi.y,
                       box.hi.z);
   if (scene.dropped_lines + scene.dropped_points > 0)
-    text += fmt::format("  left out: {} lines and {} points, which have no surface\n", scene.dropped_lines,
-                        scene.dropped_points);
+    text += fmt::format("  left out, as they have no surface: {} and {}\n", counted(scene.dropped_lines, "line"),
+                        counted(scene.dropped_points, "point"));
   for (const InfluenceArea& area : scene.areas) text += "  area " + area_text(area) + "\n";
-  for (const RaySet& set : scene.ray_sets) text += fmt::format("  rays {} ({})\n", set.name, set.count);
+  for (const RaySet& set : scene.ray_sets) text += fmt::format("  rays {} ({})\n", set.name, ray_count(set));
   return text;
 }
 
@@ -82,11 +86,13 @@ void check_target(const std::string& path) {
   fail_usage(path, "'" + ending + "' is no format that can be written", "End the name with .ply, .obj or .json");
 }
 
-int save(const Options& options, const Scene& scene, const Output& output) {
+int save(const Options& options, const Scene& scene, const Output& output, Progress& progress) {
+  progress.show("write " + options.output, 0.5);
   if (std::filesystem::path(options.output).extension() == ".json")
     save_scene(scene, options.output);
   else
     save_mesh(scene.mesh, options.output);
+  progress.erase();
   output.save_json(info_json(scene));
   output.print(info_text(scene));
   output.note("Written:\n  " + options.output + "\n");
@@ -105,14 +111,16 @@ ProceduralOptions procedural_options(const Options& options) {
 int generate(const Options& options) {
   const Output output(options.common);
   check_target(options.output);
-  return save(options, generate_scene(procedural_options(options)), output);
+  Progress progress(!options.common.quiet);
+  progress.show("make " + options.scene, 0);
+  return save(options, generate_scene(procedural_options(options)), output, progress);
 }
 
 int convert(const Options& options) {
   const Output output(options.common);
   check_target(options.output);
   Progress progress(!options.common.quiet);
-  return save(options, open_scene(options.scene, progress), output);
+  return save(options, open_scene(options.scene, progress), output, progress);
 }
 
 int describe(const Options& options) {
@@ -134,7 +142,8 @@ Action declare_generate(Arguments& arguments) {
                     "city, forest, terrain, random100 or random1000; or procedural:KIND?size=N&seed=S");
   arguments.optional_whole("--size", options->size, {1, UINT32_MAX}, "Buildings, trees or cells per side [by kind]");
   arguments.optional_whole("--seed", options->seed, {}, "Other seeds give other scenes of the kind [1]");
-  arguments.required_text("-o,--output", "FILE", options->output, kTargetHelp);
+  arguments.file("-o,--output", "FILE", options->output, kTargetHelp);
+  arguments.require("--output");
   add_common(arguments, options->common);
   return [options] { return generate(*options); };
 }
@@ -142,7 +151,8 @@ Action declare_generate(Arguments& arguments) {
 Action declare_convert(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   arguments.operand("SCENE", options->scene, kSceneHelp);
-  arguments.required_text("-o,--output", "FILE", options->output, kTargetHelp);
+  arguments.file("-o,--output", "FILE", options->output, kTargetHelp);
+  arguments.require("--output");
   add_common(arguments, options->common);
   return [options] { return convert(*options); };
 }

@@ -1,5 +1,6 @@
 // raygrain trace: the nearest hits of given rays, through local trees and the global one.
 #include <algorithm>
+#include <functional>
 #include <memory>
 #include <mutex>
 
@@ -7,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "raygrain/accelerator.h"
+#include "raygrain/compare.h"
 #include "raygrain/error.h"
 #include "raygrain/io.h"
 #include "raygrain/report.h"
@@ -26,7 +28,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr size_t kChunk = 1024;  // rays that one thread takes at a time
-constexpr size_t kSampleRays = 1000;
 
 struct Options {
   CommonOptions common;
@@ -48,9 +49,7 @@ AcceleratorOptions accelerator_options(const Options& options) {
   result.local = parse_recipe(options.local, result.registry);
   result.global = parse_recipe(options.global, result.registry);
   result.threads = options.common.thread_count();
-  result.samples = [](const InfluenceArea* area) {
-    return area ? cast_rays(AreaRays{.area = *area}, kSampleRays, 1) : std::vector<Ray>{};
-  };
+  result.samples = [](const InfluenceArea* area) { return area ? sample_rays(*area, 1) : std::vector<Ray>{}; };
   return result;
 }
 
@@ -64,15 +63,17 @@ std::vector<Ray> rays_of_set(const Scene& scene, const std::string& name) {
              names.empty() ? "It has no ray sets: use --rays FILE.csv" : suggestion(name, names));
 }
 
+using Tell = std::function<void(double done)>;
+
 /// In large pieces, so that progress can be told between them.
-Traced trace_all(const Accelerator& accelerator, std::span<const Ray> rays, unsigned threads, Progress& progress) {
+Traced trace_all(const Accelerator& accelerator, std::span<const Ray> rays, unsigned threads, const Tell& tell) {
   constexpr size_t kPiece = 64 * kChunk;
   Traced traced;
   traced.hits.resize(rays.size());
   std::mutex mutex;
   const Timer timer;
   for (size_t start = 0; start < rays.size(); start += kPiece) {
-    progress.show("trace rays", static_cast<double>(start) / static_cast<double>(rays.size()));
+    tell(static_cast<double>(start) / static_cast<double>(rays.size()));
     parallel_for(std::min(kPiece, rays.size() - start), kChunk, threads, [&](size_t begin, size_t end) {
       AcceleratorCounters counters;
       for (size_t i = start + begin; i < start + end; ++i) traced.hits[i] = accelerator.intersect(rays[i], &counters);
@@ -85,11 +86,17 @@ Traced trace_all(const Accelerator& accelerator, std::span<const Ray> rays, unsi
   return traced;
 }
 
-size_t count_wrong(const TriangleMesh& mesh, std::span<const Ray> rays, std::span<const Hit> hits, unsigned threads) {
+/// Brute force is slow: small pieces.
+size_t count_wrong(const TriangleMesh& mesh, std::span<const Ray> rays, std::span<const Hit> hits, unsigned threads,
+                   const Tell& tell) {
+  constexpr size_t kPiece = 256;
   std::vector<uint8_t> wrong(rays.size());
-  parallel_for(rays.size(), 64, threads, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) wrong[i] = intersect_reference(mesh, rays[i]) != hits[i];
-  });
+  for (size_t start = 0; start < rays.size(); start += kPiece) {
+    tell(static_cast<double>(start) / static_cast<double>(rays.size()));
+    parallel_for(std::min(kPiece, rays.size() - start), 8, threads, [&](size_t begin, size_t end) {
+      for (size_t i = start + begin; i < start + end; ++i) wrong[i] = intersect_reference(mesh, rays[i]) != hits[i];
+    });
+  }
   return static_cast<size_t>(std::count(wrong.begin(), wrong.end(), 1));
 }
 
@@ -154,9 +161,24 @@ void check_options(const Options& options) {
                "Give --rays FILE.csv (columns ox,oy,oz,dx,dy,dz[,tmin,tmax]) or --set NAME of a scene.json");
 }
 
+Traced trace_and_verify(const Options& options, const Scene& scene, const std::vector<InfluenceArea>& areas,
+                        std::span<const Ray> rays, Progress& progress) {
+  const double built = options.verify ? 0.1 : 0.5, traced_share = options.verify ? 0.2 : 1;
+  const unsigned threads = options.common.thread_count();
+  progress.show("build the trees", 0);
+  const Accelerator accelerator(scene.mesh, areas, accelerator_options(options));
+  Traced traced = trace_all(accelerator, rays, threads,
+                            [&](double done) { progress.show("trace rays", built + done * (traced_share - built)); });
+  if (!options.verify) return traced;
+  traced.mismatches = count_wrong(scene.mesh, rays, traced.hits, threads, [&](double done) {
+    progress.show("search by brute force", traced_share + done * (1 - traced_share));
+  });
+  return traced;
+}
+
 int trace(const Options& options) {
   check_options(options);
-  const AcceleratorOptions build = accelerator_options(options);
+  accelerator_options(options);  // recipes are checked before the scene is loaded
   const Output output(options.common);
   require_writable(options.output);
   Progress progress(!options.common.quiet);
@@ -164,10 +186,7 @@ int trace(const Options& options) {
   const std::vector<InfluenceArea> areas = choose_areas(options.areas, scene, output);
   const std::vector<Ray> rays = options.rays.empty() ? rays_of_set(scene, options.set) : load_rays(options.rays);
 
-  const Accelerator accelerator(scene.mesh, areas, build);
-  const unsigned threads = options.common.thread_count();
-  Traced traced = trace_all(accelerator, rays, threads, progress);
-  if (options.verify) traced.mismatches = count_wrong(scene.mesh, rays, traced.hits, threads);
+  Traced traced = trace_and_verify(options, scene, areas, rays, progress);
   save_hits(traced.hits, options.output);
   progress.erase();
   output.save_json(trace_json(options, scene, traced));
@@ -183,10 +202,10 @@ int trace(const Options& options) {
 Action declare_trace(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   arguments.operand("SCENE", options->scene, kSceneHelp);
-  arguments.text("--rays", "FILE.csv", options->rays, "Rays: columns ox,oy,oz,dx,dy,dz and optional tmin,tmax");
+  arguments.file("--rays", "FILE.csv", options->rays, "Rays: columns ox,oy,oz,dx,dy,dz and optional tmin,tmax");
   arguments.text("--set", "NAME", options->set, "Rays of this ray set of a scene.json");
-  arguments.required_text("-o,--output", "HITS.csv", options->output,
-                          "Hits: columns t,u,v,triangle; a miss is inf,0,0,-1");
+  arguments.file("-o,--output", "HITS.csv", options->output, "Hits: columns t,u,v,triangle; a miss is inf,0,0,-1");
+  arguments.require("--output");
   add_area_options(arguments, options->areas);
   arguments.group("Trees");
   arguments.text("--local", "RECIPE", options->local, "Recipe of each area's tree [PAH+ALL@binned]");

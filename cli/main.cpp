@@ -72,10 +72,17 @@ std::string default_hint(ErrorCode code) {
   }
 }
 
+/// Begins with a capital, but for names like half_width, which are to be found as they are.
+std::string sentence(std::string text) {
+  const bool name = text.substr(0, text.find(' ')).find('_') != std::string::npos;
+  if (!name && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
+  return text;
+}
+
 int fail(const Error& error) {
-  std::string message = error.message, hint = error.hint.empty() ? default_hint(error.code) : error.hint;
+  std::string message = error.message;
   while (message.ends_with('.') || message.ends_with(' ')) message.pop_back();
-  if (hint[0] >= 'a' && hint[0] <= 'z') hint[0] = static_cast<char>(hint[0] - 'a' + 'A');
+  const std::string hint = sentence(error.hint.empty() ? default_hint(error.code) : error.hint);
   const std::string line = one_line("raygrain: error: " + error.where + ": " + message + ". " + hint) + "\n";
   const ssize_t ignored = ::write(STDERR_FILENO, line.data(), line.size());
   static_cast<void>(ignored);
@@ -132,25 +139,31 @@ std::string version() {
   return "raygrain " RAYGRAIN_VERSION " (" + environment.commit + ", " + environment.compiler + ")\n";
 }
 
-int run(int argument_count, char** arguments) {
-  CLI::App program("Ray-tracing structures specialised to known rays: built, compared, and exact for every ray.",
-                   "raygrain");
-  bool show_version = false;
-  program.add_flag("--version", show_version, "Print the version and exit");
-  program.get_formatter()->column_width(34);
+struct Choice {
+  bool version = false;
+  Action action;
+};
 
-  Action chosen;
+void declare(CLI::App& program, Choice& choice) {
+  program.add_flag("--version", choice.version, "Print the version and exit");
+  program.get_formatter()->column_width(34);
   Arguments top(program);
-  for (const Command& command : kCommands) add_command(top, command, chosen);
+  for (const Command& command : kCommands) add_command(top, command, choice.action);
   Arguments scene = top.command("scene", "Make, convert and describe scenes");
-  for (const Command& command : kSceneCommands) add_command(scene, command, chosen);
+  for (const Command& command : kSceneCommands) add_command(scene, command, choice.action);
   top.footer(
       "First steps:\n"
       "  raygrain compare 'procedural:city?size=8' --out result\n"
       "  raygrain compare model.obj --sun 0.35,-0.8,0.48 --out result\n"
       "Exit codes: 0 success, 1 bad data or a failed write, 2 bad usage.");
   program.require_subcommand(0, 1);
+}
 
+int run(int argument_count, char** arguments) {
+  CLI::App program("Ray-tracing structures specialised to known rays: built, compared, and exact for every ray.",
+                   "raygrain");
+  Choice choice;
+  declare(program, choice);
   try {
     program.parse(argument_count, arguments);
   } catch (const CLI::CallForHelp&) {
@@ -161,12 +174,12 @@ int run(int argument_count, char** arguments) {
   } catch (const CLI::ParseError& error) {
     throw usage_error(program, error);
   }
-  if (show_version) {
+  if (choice.version) {
     write_standard_output(version());
     return kSuccess;
   }
-  if (!chosen) fail_usage("raygrain", "a command is required", "See raygrain --help");
-  return chosen();
+  if (!choice.action) fail_usage("raygrain", "a command is required", "See raygrain --help");
+  return choice.action();
 }
 
 int run_safely(int argument_count, char** arguments) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "raygrain/analyze.h"
-#include "raygrain/rays.h"
+#include "raygrain/compare.h"
 
 #include "base/nearest_name.h"
 #include "base/timer.h"
@@ -13,16 +13,14 @@ namespace raygrain::cli {
 
 namespace {
 
-constexpr size_t kSampleRays = 1000;
-constexpr uint64_t kSampleSeed = 0x5a3;  // mixed into the seed, so that a tree is never measured with its own samples
-
 std::string known_names(std::span<const InfluenceArea> areas, const std::string& wanted) {
   std::vector<std::string_view> names;
   for (const InfluenceArea& area : areas) names.push_back(area.name);
   return suggestion(wanted, names);
 }
 
-std::optional<InfluenceArea> pick_area(const TreeOptions& options, std::span<const InfluenceArea> areas, bool needed) {
+std::optional<InfluenceArea> pick_area(const TreeOptions& options, const Scene& scene,
+                                       std::span<const InfluenceArea> areas, bool needed) {
   if (options.whole) {
     if (needed) fail_usage("--recipe", "'" + options.recipe + "' needs an area", "Leave out --whole");
     return std::nullopt;
@@ -30,12 +28,12 @@ std::optional<InfluenceArea> pick_area(const TreeOptions& options, std::span<con
   if (options.area.empty()) {
     if (areas.size() > 1)
       fail_usage("--area", "the scene has several areas and none is named", known_names(areas, "") + ", or --whole");
-    if (areas.empty() && needed) fail_without_areas(options.scene);
+    if (areas.empty() && needed) fail_without_areas(options.areas, scene, options.scene);
     return areas.empty() ? std::nullopt : std::optional(areas[0]);
   }
   for (const InfluenceArea& area : areas)
     if (area.name == options.area) return area;
-  if (areas.empty()) fail_without_areas(options.scene);
+  if (areas.empty()) fail_without_areas(options.areas, scene, options.scene);
   fail_usage("--area", "there is no area '" + options.area + "'", known_names(areas, options.area));
 }
 
@@ -43,8 +41,9 @@ std::optional<InfluenceArea> pick_area(const TreeOptions& options, std::span<con
 
 void add_tree_options(Arguments& arguments, TreeOptions& options) {
   arguments.operand("SCENE", options.scene, kSceneHelp);
-  arguments.required_text("--recipe", "NAME", options.recipe,
-                          "What the tree is made by, e.g. PAH+ALL; 'raygrain recipes' lists all");
+  arguments.text("--recipe", "NAME", options.recipe,
+                 "What the tree is made by, e.g. PAH+ALL; 'raygrain recipes' lists all");
+  arguments.require("--recipe");
   add_area_options(arguments, options.areas);
   arguments.text("--area", "NAME", options.area, "Which area, where there are several");
   arguments.flag("--whole", options.whole, "The tree of the whole scene, of no area");
@@ -80,11 +79,10 @@ OneTree build_one_tree(const TreeOptions& options, const Scene& scene, const std
   result.registry = default_registry();
   result.recipe = parse_recipe(options.recipe, result.registry);
   const bool samples = needs_samples(result.recipe, result.registry);
-  result.area = pick_area(options, areas, samples || needs_area(result.recipe, result.registry));
-  if (samples) result.samples = cast_rays(AreaRays{.area = *result.area}, kSampleRays, options.seed ^ kSampleSeed);
+  result.area = pick_area(options, scene, areas, samples || needs_area(result.recipe, result.registry));
+  if (samples) result.samples = sample_rays(*result.area, options.seed);
 
-  constexpr size_t kSlowToBuild = 200'000;  // triangles; takes about a second
-  if (scene.mesh.triangle_count() > kSlowToBuild) progress.announce("building " + recipe_name(result.recipe));
+  progress.show("build " + recipe_name(result.recipe), 0);
   const Timer timer;
   if (result.area) {
     LocalTree local = build_local_tree(scene.mesh, *result.area, result.recipe, result.registry, {}, result.samples);
@@ -95,7 +93,6 @@ OneTree build_one_tree(const TreeOptions& options, const Scene& scene, const std
         std::make_shared<const Bvh>(build_global_tree(scene.mesh, result.recipe, result.registry, &result.log));
   }
   result.seconds = timer.seconds();
-  progress.erase();
   return result;
 }
 

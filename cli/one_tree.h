@@ -43,7 +43,7 @@ struct OneTree {
 /// Checks what can be checked before the scene is loaded.
 Recipe check_tree_options(const TreeOptions& options, const Registry& registry);
 
-/// Throws Error (kUsage) when the recipe needs an area and none or several are there.
+/// Leaves its progress on the line. Throws Error (kUsage) when the recipe needs an area and none or several are there.
 OneTree build_one_tree(const TreeOptions& options, const Scene& scene, const std::vector<InfluenceArea>& areas,
                        Progress& progress);
 

@@ -20,16 +20,11 @@ double pruned_cost(const ComparisonRow& row) {
 /// The rows [begin, end) belong to one area.
 AreaResult area_result(const Comparison& comparison, size_t begin, size_t end) {
   const std::vector<ComparisonRow>& rows = comparison.rows;
-  AreaResult result{rows[begin].local->area, begin, begin, begin};
-  for (size_t i = begin; i < end; ++i) {
-    if (pruned_cost(rows[i]) < pruned_cost(rows[result.best])) result.best = i;
-    if (rows[i].name == kBaseline && rows[result.baseline].name != kBaseline) result.baseline = i;
-  }
-  result.rival = result.best;
-  if (result.best != result.baseline || end - begin == 1) return result;
-  result.rival = result.baseline == begin ? begin + 1 : begin;
-  for (size_t i = begin; i < end; ++i)
-    if (i != result.baseline && pruned_cost(rows[i]) < pruned_cost(rows[result.rival])) result.rival = i;
+  const std::string& area = rows[begin].area;
+  AreaResult result{rows[begin].local->area, best_row(comparison, area), begin, begin};
+  for (size_t i = end; i-- > begin;)
+    if (rows[i].name == kBaseline) result.baseline = i;
+  result.rival = end - begin == 1 ? begin : best_row(comparison, area, result.baseline);
   return result;
 }
 

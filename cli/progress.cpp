@@ -1,6 +1,7 @@
 #include "cli/progress.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -13,7 +14,8 @@ namespace raygrain::cli {
 
 namespace {
 
-constexpr double kDelay = 1.0, kInterval = 0.1;  // seconds before the first line, and between lines
+constexpr double kDelay = 1.0;                       // seconds before the first line
+constexpr std::chrono::milliseconds kInterval{100};  // between lines
 constexpr int kBarWidth = 24;
 
 size_t terminal_width() {
@@ -30,30 +32,59 @@ void write_error_output(const std::string& text) {
 
 Progress::Progress(bool wanted) : enabled_(wanted && ::isatty(STDERR_FILENO) == 1) {}
 
+Progress::~Progress() {
+  if (thread_.joinable()) {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+    }
+    wake_.notify_one();
+    thread_.join();
+  }
+  erase();
+}
+
 void Progress::show(const std::string& step, double done) {
-  const double now = timer_.seconds();
-  if (!enabled_ || now < kDelay || now < last_drawn_ + kInterval) return;
-  last_drawn_ = now;
+  if (!enabled_) return;
   done = std::clamp(done, 0.0, 1.0);
   const int filled = static_cast<int>(std::lround(done * kBarWidth));
-  draw(fmt::format("[{:#<{}}{:.<{}}] {:3.0f} %  {}", "", filled, "", kBarWidth - filled, 100 * done, step));
+  std::string line =
+      fmt::format("[{:#<{}}{:.<{}}] {:3.0f} %  {}", "", filled, "", kBarWidth - filled, 100 * done, step);
+  const std::lock_guard lock(mutex_);
+  wanted_ = std::move(line);
+  if (!thread_.joinable()) thread_ = start_without_signals([this] { draw_repeatedly(); });
 }
 
 void Progress::announce(const std::string& step) {
-  if (enabled_) draw(step + " ...");
+  if (!enabled_) return;
+  const std::lock_guard lock(mutex_);
+  wanted_ = step + " ...";
+  draw(wanted_);
 }
 
 void Progress::erase() {
-  if (!shown_) return;
+  const std::lock_guard lock(mutex_);
+  wanted_.clear();
+  if (drawn_.empty()) return;
   write_error_output(kEraseLine);
-  shown_ = false;
+  drawn_.clear();
   set_progress_line_shown(false);
 }
 
+void Progress::draw_repeatedly() {
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    wake_.wait_for(lock, kInterval);
+    if (stopping_ || wanted_.empty() || wanted_ == drawn_ || timer_.seconds() < kDelay) continue;
+    if (begin_drawing()) draw(wanted_);
+    end_drawing();
+  }
+}
+
 void Progress::draw(const std::string& line) {
-  shown_ = true;
   set_progress_line_shown(true);
   write_error_output(kEraseLine + line.substr(0, terminal_width() - 1));
+  drawn_ = line;
 }
 
 }  // namespace raygrain::cli

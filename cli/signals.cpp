@@ -1,6 +1,8 @@
 #include "cli/signals.h"
 
+#include <atomic>
 #include <csignal>
+#include <ctime>
 #include <initializer_list>
 
 #include <unistd.h>
@@ -15,9 +17,20 @@ namespace {
 
 // A handler can be told things through such a variable only.
 volatile std::sig_atomic_t progress_line_shown = 0;
+std::atomic<bool> is_drawing = false, is_ending = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "else no handler may use them");
+
+/// Either the drawing thread sees that the end has come, or it is waited for here; not for ever, should the terminal
+/// have stopped.
+void stop_drawing() {
+  is_ending = true;
+  constexpr timespec kMillisecond{0, 1'000'000};
+  for (int i = 0; i < 200 && is_drawing; ++i) ::nanosleep(&kMillisecond, nullptr);
+}
 
 extern "C" void stop_at_once(int signal) {
   remove_unfinished_files();
+  stop_drawing();
   if (progress_line_shown) {
     const ssize_t ignored = ::write(STDERR_FILENO, kEraseLine, sizeof kEraseLine - 1);
     static_cast<void>(ignored);
@@ -49,6 +62,24 @@ void install_signal_handlers() {
 
 void set_progress_line_shown(bool shown) {
   progress_line_shown = shown ? 1 : 0;
+}
+
+bool begin_drawing() {
+  is_drawing = true;
+  return !is_ending;
+}
+
+void end_drawing() {
+  is_drawing = false;
+}
+
+std::thread start_without_signals(const std::function<void()>& run) {
+  sigset_t all, before;
+  ::sigfillset(&all);
+  ::pthread_sigmask(SIG_SETMASK, &all, &before);  // a thread begins with the mask of the one that made it
+  std::thread thread(run);
+  ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  return thread;
 }
 
 }  // namespace raygrain::cli

@@ -92,7 +92,9 @@ std::vector<BadInput> bad_scenes() {
       bad_scene("empty ply", "scene.ply", "", "SCENE"),
       bad_scene("no triangles", "scene.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\n", "SCENE"),
       bad_scene("only lines", "scene.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n", "SCENE"),
-      bad_scene("text garbage", "scene.obj", "this is no mesh at all\n\x01\x02\n", "SCENE"),
+      bad_scene("text garbage", "scene.obj", "\nthis is no mesh at all\n\x01\x02\n",
+                "SCENE:2: \"this is no mesh at all\""),
+      bad_scene("one line", "scene.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n", "only 1 line and 0 points"),
       bad_scene("garbage ply", "scene.ply", "this is no mesh at all\n", "SCENE"),
       bad_scene("binary noise", "scene.glb", noise, "SCENE"),
       bad_scene("truncated ply", "scene.ply", ply_header("1000", "500") + vertices, "SCENE"),
@@ -124,7 +126,7 @@ std::vector<BadInput> bad_areas_and_rays() {
       bad_areas(
           "zero size",
           plane_area(R"("center": [0, 0, 0], "direction": [0, 0, 1], "half_width": 0, "half_height": 1, "depth": 9)"),
-          "half_width"),
+          ". half_width must"),
       bad_areas(
           "zero direction",
           plane_area(R"("center": [0, 0, 0], "direction": [0, 0, 0], "half_width": 1, "half_height": 1, "depth": 9)"),
@@ -150,6 +152,16 @@ std::vector<BadInput> bad_usage() {
       {"unknown scene command", {"scene", "inform", "SCENE"}, kUsage, "Did you mean info"},
       {"unknown option", compare_with({"--recipe", "SAH+ALL"}), kUsage, "Did you mean --recipes"},
       {"missing operand", {"compare"}, kUsage, "SCENE is required"},
+      {"empty operand", {"scene", "info", ""}, kUsage, "SCENE: is empty"},
+      {"tree to a file named -",
+       {"build", "SCENE", "--recipe", "SAH+ALL", "-o", "-"},
+       kUsage,
+       "--output: needs a file"},
+      {"nodes to a file named -",
+       {"analyze", "SCENE", "--recipe", "SAH+ALL", "--nodes", "-"},
+       kUsage,
+       "--nodes: needs a file"},
+      {"folder named -", {"compare", "SCENE", "--sun", "0,0,1", "--out", "-"}, kUsage, "--out: needs a file"},
       {"operand too many", {"scene", "info", "SCENE", "SCENE"}, kUsage, "operand too many"},
       {"missing value", {"compare", "SCENE", "--rays"}, kUsage, "--rays"},
       {"bad number", compare_with({"--seed", "1.5"}), kUsage, "--seed"},
@@ -255,7 +267,8 @@ void check(const BadInput& row) {
   const size_t stop = result.errors.rfind(". ");
   ASSERT_NE(stop, std::string::npos) << "no hint: " << result.errors;
   EXPECT_GT(result.errors.size(), stop + 8) << "no hint: " << result.errors;
-  const std::string expected = row.expected == "SCENE is required" ? row.expected : path(row.expected);
+  const std::string expected =
+      row.expected.starts_with("SCENE is") || row.expected.starts_with("SCENE: is") ? row.expected : path(row.expected);
   EXPECT_NE(result.errors.find(expected), std::string::npos) << result.errors << "lacks: " << expected;
 
   // Nothing beside the inputs, but perhaps an empty output folder.

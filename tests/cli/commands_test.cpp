@@ -195,6 +195,27 @@ TEST(SceneCommands, GenerateConvertAndDescribe) {
   EXPECT_NE(run_program({"scene", "info", second}).output.find(" triangles, "), std::string::npos);
 }
 
+TEST(SceneCommands, InfoCountsTheRaysOfEverySet) {
+  const TemporaryFolder folder;
+  const std::string scene = folder.file("scene.json");
+  write_file(folder.file("rays.csv"), "ox,oy,oz,dx,dy,dz\n0,0,0,0,0,1\n0,0,0,0,1,0\n0,0,0,1,0,0\n");
+  write_file(scene, R"({"format": "raygrain-scene", "version": 1, "procedural": "procedural:random100", "rays": [
+    {"name": "view", "camera": {"eye": [0, 0, 9], "target": [0, 0, 0], "width": 320, "height": 200}},
+    {"name": "list", "rays": [[0, 0, 0, 0, 0, 1], [0, 0, 0, 0, 1, 0]]}, {"name": "table", "file": "rays.csv"},
+    {"name": "matched", "surface": {"direction": [0, -1, 0]}, "count": 40}]})");
+  const RunResult text = run_program({"scene", "info", scene});
+  ASSERT_EQ(text.exit_code, 0) << text.errors;
+  const Json sets = Json::parse(run_program({"scene", "info", scene, "--json", "-"}).output).at("ray_sets");
+  const std::vector<std::pair<std::string, size_t>> expected{
+      {"view", 64000}, {"list", 2}, {"table", 3}, {"matched", 40}};
+  ASSERT_EQ(sets.size(), expected.size());
+  for (size_t i = 0; i < expected.size(); ++i) {
+    const auto& [name, count] = expected[i];
+    EXPECT_NE(text.output.find("rays " + name + " (" + std::to_string(count) + ")"), std::string::npos) << text.output;
+    EXPECT_EQ(sets[i], (Json{{"name", name}, {"count", count}}));
+  }
+}
+
 TEST(SceneCommands, GenerateTakesTheNameOfAProceduralScene) {
   const TemporaryFolder folder;
   const RunResult a =

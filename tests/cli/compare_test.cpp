@@ -122,6 +122,27 @@ TEST(Compare, LeavesOutFacesOfALightThatReachNothing) {
   EXPECT_EQ(quiet.output.find("light+y"), std::string::npos) << "--quiet leaves notes out";
 }
 
+TEST(Compare, TreatsEmptyAreasOfAFileAlike) {
+  const auto plane = [](const char* name, const char* center) {
+    return std::string(R"({"name": ")") + name + R"(", "plane": {"center": )" + center +
+           R"(, "direction": [0, -1, 0], "half_width": 20, "half_height": 20, "depth": 90}})";
+  };
+  const TemporaryFolder folder;
+  const std::string areas = folder.file("areas.json"), far = plane("far", "[90000, 0, 0]");
+  const auto compare = [&](const std::string& list) {
+    write_file(areas, R"({"format": "raygrain-areas", "version": 1, "areas": [)" + list + "]}");
+    return run_program({"compare", kSmallScene, "--rays", "50", "--recipes", "SAH+LSPH", "--areas", areas});
+  };
+  const RunResult one = compare(far + ", " + plane("near", "[0, 80, 0]"));
+  ASSERT_EQ(one.exit_code, 0) << one.errors;
+  EXPECT_NE(one.output.find("no triangle lies there: far"), std::string::npos) << one.output;
+  EXPECT_NE(one.output.find("near: SAH+LSPH is best"), std::string::npos) << one.output;
+  EXPECT_EQ(one.output.find("far:"), std::string::npos) << one.output;
+  const RunResult none = compare(far);
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_NE(none.errors.find("no triangle lies in the influence areas"), std::string::npos) << none.errors;
+}
+
 TEST(Compare, IsTheSameForAnyNumberOfThreads) {
   const TemporaryFolder folder;
   Json results[2];
