@@ -86,9 +86,9 @@ using ClipPrimitive = std::function<Bounds(uint32_t primitive, const Bounds& box
 
 /// build_spatial: when a plane may cut primitives in two.
 struct SpatialParameters {
-  /// Planes that cut primitives are tried where the sides of the best split overlap in more than this part of the root's
-  /// measure (alpha of Stich et al.); in [0, 1].
-  float overlap = 1e-5f;
+  /// Planes that cut primitives are tried where the sides of the best split overlap in more than this part of the
+  /// root's measure (alpha of Stich et al.); in [0, 1].
+  float overlap = 1e-4f;
   /// Most references that splits may add, as a share of the primitives; in [0, 16].
   float budget = 0.5f;
 };
@@ -158,13 +158,22 @@ Bvh build_paper(std::span<const Bounds> bounds, std::span<const Vec3> centroids,
 /// Binned top-down construction after Wald, "On fast construction of SAH-based bounding volume hierarchies" (2007): one
 /// pass over the primitives for all axes, prefix and suffix sweeps over the slices, the best plane of all axes that the
 /// orientation strategy admits: those whose quality reaches split_plane_quality_threshold, or else the best. Cuts the
-/// box of the centroids into equal slices: `bins`, but no more than 4 + count / 2. Of planes with equal cost the one with
-/// the most even counts wins. Ignores `fallback` and `decision`. Same errors, and kCancelled.
+/// box of the centroids into equal slices: `bins`, but no more than 4 + count / 2. Of planes with equal cost the one
+/// with the most even counts wins. Ignores `fallback` and `decision`. Same errors, and kCancelled.
 ///
 /// Parallel, and the same tree for any number of threads; one thread where `cost`, `planes`, `partition` or `stop` is
 /// replaced (`planes` and `partition` also see all `bins`).
 Bvh build_binned(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                  BuildLog* log = nullptr);
+
+/// As build_binned, and where the sides of its best split overlap too much, planes through space that cut primitives in
+/// two: Stich, Friedrich and Dietrich, "Spatial splits in bounding volume hierarchies" (2009), under any measure. A
+/// primitive that a plane cuts goes whole to one side where that is cheaper. 16 slices per axis of the node's box; room
+/// for added references (`spatial.budget`) is handed down in proportion to counts; the plane is found by cutting boxes and priced by cutting primitives. The tree's leaves may hold a
+/// primitive more than once: Bvh::split_references. Parallel, and the same tree for any number of threads. Same errors;
+/// kUsage without `clip` or where `cost`, `planes`, `partition` or `stop` is replaced.
+Bvh build_spatial(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
+                  BuildLog* log = nullptr);
 
 /// Throws Error (kUsage, naming the field) for values out of range.
 void validate(const BuildOptions& options);

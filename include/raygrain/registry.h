@@ -12,10 +12,12 @@
 
 namespace raygrain {
 
-/// What a named heuristic may be made for. `area` may be null (global trees); `samples` may be empty.
+/// What a named heuristic may be made for. `area` may be null (global trees); `samples` may be empty. `clip` cuts the
+/// primitives, for builders that need it.
 struct HeuristicInput {
   const InfluenceArea* area = nullptr;
-  std::span<const Ray> samples;
+  std::span<const Ray> samples = {};
+  ClipPrimitive clip = {};
 };
 
 struct MeasureEntry {
@@ -42,7 +44,7 @@ struct BuilderEntry {
 struct Registry {
   std::vector<MeasureEntry> measures;          // SAH, PAH, PAH-UNCULLED, DIR, SAMPLED
   std::vector<OrientationEntry> orientations;  // LSPH, SPFH, ALL, ROBIN
-  std::vector<BuilderEntry> builders;          // paper, binned
+  std::vector<BuilderEntry> builders;          // paper, binned, spatial
 };
 
 Registry default_registry();

@@ -144,6 +144,7 @@ Piece ReferenceBuilder::build_piece(const OpenRange& root) const {
       piece.nodes[node.index] = {node.context.bounds, static_cast<uint32_t>(piece.prims.size()), node.context.count};
       if (logging_) piece.notes[node.index] = note;
       for (const Reference& reference : references_of(node)) piece.prims.push_back(reference.id());
+      if (spatial_) std::sort(piece.prims.end() - node.context.count, piece.prims.end());
       continue;
     }
     const auto first = static_cast<uint32_t>(piece.nodes.size());

@@ -68,7 +68,10 @@ class ReferenceBuilder {
   Cut find_last_cut(const OpenRange& node, Scratch& scratch, unsigned threads) const;
   Cut halve(const OpenRange& node) const;
   bool is_leaf_cheaper(const OpenRange& node, const Cut& cut) const;
-  bool part_by_space(const OpenRange& node, Cut& cut, Scratch& scratch, unsigned threads, Children& children) const;
+  bool part_by_space(const OpenRange& node, Cut& cut, double limit, Scratch& scratch, unsigned threads,
+                     Children& children) const;
+  bool price_sides(const OpenRange& node, Cut& cut, std::span<const SpaceSides> chunks) const;
+  static bool fits(const OpenRange& node, const Cut& cut);
   void part_by_keys(const OpenRange& node, const Cut& cut, Scratch& scratch, unsigned threads,
                     Children& children) const;
   Children open_children(const OpenRange& node, const Cut& cut) const;

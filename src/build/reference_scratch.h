@@ -8,19 +8,17 @@ namespace raygrain::builder {
 inline constexpr size_t kChunk = 16384;  // references that one thread takes at a time
 
 struct ReferenceBuilder::Scratch {
-  struct Sides {
-    std::vector<Reference> left, right;
-    std::array<PackedBox, 2> boxes, keys;
-  };
   std::vector<Slices> slices;
   std::vector<SpaceSlices> space;
-  std::vector<Sides> sides;
+  std::vector<SpaceSides> sides;
+  std::vector<std::array<PackedBox, 2>> keys;  // of left and right side
   std::vector<size_t> left_counts;
 
   void prepare(size_t count) {
     const size_t chunks = (count + kChunk - 1) / kChunk;
     if (slices.size() < chunks) slices.resize(chunks);
     if (sides.size() < chunks) sides.resize(chunks);
+    if (keys.size() < chunks) keys.resize(chunks);
     if (left_counts.size() < chunks) left_counts.resize(chunks);
   }
 };

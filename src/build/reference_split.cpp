@@ -22,6 +22,9 @@ size_t chunks_of(const NodeContext& node) {
   return (node.count + kChunk - 1) / kChunk;
 }
 
+/// A plane is tried on primitives where cutting boxes alone prices it below this many times the best other cut.
+constexpr double kHope = 1.1;
+
 uint32_t slices_for(uint32_t count, uint32_t most) {
   return std::min(most, 4 + count / 2);
 }
@@ -40,19 +43,13 @@ bool ReferenceBuilder::split(const OpenRange& node, Scratch& scratch, unsigned t
   laps.lap(&BuildTimes::orientations);
   scratch.prepare(context.count);
   Cut cut = find_cut(node, order, scratch, threads);
-  const Cut space = spatial_ ? find_space_cut(node, order, cut, scratch, threads) : Cut{};
+  Cut space = spatial_ ? find_space_cut(node, order, cut, scratch, threads) : Cut{};
+  if (space && !part_by_space(node, space, cut.cost, scratch, threads, children)) space = {};
   if (!cut && !space && options_.split_inseparable) cut = find_last_cut(node, scratch, threads);
-  const Cut& best = space ? space : cut;
-  const bool splits = best && !(options_.merge_leaves && is_leaf_cheaper(node, best));
+  const Cut& chosen = space ? space : cut;
   laps.lap(&BuildTimes::candidates);
-  if (!splits) return false;
-  Cut chosen = best;
-  if (!space || !part_by_space(node, chosen, scratch, threads, children)) {
-    if (!cut && options_.split_inseparable) cut = find_last_cut(node, scratch, threads);
-    if (!cut || (space && options_.merge_leaves && is_leaf_cheaper(node, cut))) return false;
-    chosen = cut;
-    part_by_keys(node, chosen, scratch, threads, children);
-  }
+  if (!chosen || (options_.merge_leaves && is_leaf_cheaper(node, chosen))) return false;
+  if (!space) part_by_keys(node, chosen, scratch, threads, children);
   note.axis = static_cast<int8_t>(chosen.axis);
   note.quality = chosen.quality;
   note.ratio =
@@ -98,12 +95,11 @@ Cut ReferenceBuilder::find_space_cut(const OpenRange& node, const AxisOrder& ord
   if (scratch.space.size() < chunks_of(node.context)) scratch.space.resize(chunks_of(node.context));
   for_chunks(references_of(node), threads, [&](size_t chunk, std::span<const Reference> references) {
     scratch.space[chunk].clear();
-    scratch.space[chunk].add(grid, order, references, options_.clip);
+    scratch.space[chunk].add(grid, references);
   });
   for (size_t i = 1; i < chunks_of(node.context); ++i) scratch.space[0].merge(scratch.space[i]);
-  const auto room = static_cast<uint32_t>(node.room);
-  const Cut cut = scratch.space[0].best_cut(strategy_, node.context, order, grid, room);
-  return cut && cut.cost < best.cost ? cut : Cut{};
+  const Cut cut = scratch.space[0].best_cut(strategy_, node.context, order, grid);
+  return cut && cut.cost < kHope * best.cost ? cut : Cut{};
 }
 
 /// For keys that no plane of the admitted axes separates: the longest axis of their box, or else two halves of the list
@@ -160,37 +156,32 @@ ReferenceBuilder::Children ReferenceBuilder::open_children(const OpenRange& node
   return children;
 }
 
-/// False where one side came out empty or nothing was gained.
-bool ReferenceBuilder::part_by_space(const OpenRange& node, Cut& cut, Scratch& scratch, unsigned threads,
+/// Cuts primitives at the plane and makes `cut` say what came of it. False where that costs no less than `limit`, or
+/// takes more room than there is, or gains nothing.
+bool ReferenceBuilder::part_by_space(const OpenRange& node, Cut& cut, double limit, Scratch& scratch, unsigned threads,
                                      Children& children) const {
+  const size_t chunks = chunks_of(node.context);
   for_chunks(references_of(node), threads, [&](size_t chunk, std::span<const Reference> references) {
-    Scratch::Sides& sides = scratch.sides[chunk];
-    sides.left.clear();
-    sides.right.clear();
-    part_by_plane(cut, references, strategy_, node.context, options_.clip, sides.left, sides.right);
-    sides.boxes = sides.keys = {};
-    const auto extend = [&](size_t side, const Reference& reference) {
-      sides.boxes[side].extend(reference.box);
-      sides.keys[side].extend(PackedBox::of_point(reference.key));
-    };
-    for (const Reference& reference : sides.left) extend(0, reference);
-    for (const Reference& reference : sides.right) extend(1, reference);
+    scratch.sides[chunk].part(cut, references, options_.clip);
+  });
+  if (!price_sides(node, cut, {scratch.sides.data(), chunks}) || !(cut.cost < limit)) return false;
+  for_chunks(references_of(node), threads, [&](size_t chunk, std::span<const Reference>) {
+    scratch.sides[chunk].mend(cut, strategy_, node.context);
   });
   std::array<PackedBox, 2> boxes, keys;
   cut.left_count = cut.right_count = 0;
-  const size_t chunks = chunks_of(node.context);
   for (size_t i = 0; i < chunks; ++i) {
-    const Scratch::Sides& sides = scratch.sides[i];
+    const SpaceSides& sides = scratch.sides[i];
     cut.left_count += static_cast<uint32_t>(sides.left.size());
     cut.right_count += static_cast<uint32_t>(sides.right.size());
-    for (size_t side = 0; side < 2; ++side) {
-      boxes[side].extend(sides.boxes[side]);
-      keys[side].extend(sides.keys[side]);
-    }
+    const auto extend = [&](size_t side, const Reference& reference) {
+      boxes[side].extend(reference.box);
+      keys[side].extend(PackedBox::of_point(reference.key));
+    };
+    for (const Reference& reference : sides.left) extend(0, reference);
+    for (const Reference& reference : sides.right) extend(1, reference);
   }
-  if (cut.left_count == 0 || cut.right_count == 0 || std::max(cut.left_count, cut.right_count) >= node.context.count ||
-      size_t{cut.left_count} + cut.right_count > node.room)
-    return false;
+  if (!fits(node, cut)) return false;
   cut.left = boxes[0].unpacked();
   cut.right = boxes[1].unpacked();
   cut.left_measure = strategy_.measure(cut.left, node.context);
@@ -205,6 +196,33 @@ bool ReferenceBuilder::part_by_space(const OpenRange& node, Cut& cut, Scratch& s
     right = std::copy(scratch.sides[i].right.begin(), scratch.sides[i].right.end(), right);
   }
   return true;
+}
+
+/// The sides with all parts.
+bool ReferenceBuilder::price_sides(const OpenRange& node, Cut& cut, std::span<const SpaceSides> chunks) const {
+  PackedBox left, right;
+  cut.left_count = cut.right_count = 0;
+  for (const SpaceSides& sides : chunks) {
+    left.extend(sides.left_box);
+    right.extend(sides.right_box);
+    cut.left_count += static_cast<uint32_t>(sides.left.size() + sides.torn.size());
+    cut.right_count += static_cast<uint32_t>(sides.right.size() + sides.torn.size());
+  }
+  if (!fits(node, cut)) return false;
+  cut.left = left.unpacked();
+  cut.right = right.unpacked();
+  std::array<float, 2> measures{};
+  strategy_.measure(std::array{cut.left, cut.right}, measures, node.context);
+  cut.left_measure = measures[0];
+  cut.right_measure = measures[1];
+  cut.cost =
+      static_cast<double>(cut.left_measure) * cut.left_count + static_cast<double>(cut.right_measure) * cut.right_count;
+  return true;
+}
+
+bool ReferenceBuilder::fits(const OpenRange& node, const Cut& cut) {
+  return cut.left_count > 0 && cut.right_count > 0 && std::max(cut.left_count, cut.right_count) < node.context.count &&
+         size_t{cut.left_count} + cut.right_count <= node.room;
 }
 
 /// Both sides keep their order.
@@ -239,11 +257,11 @@ void ReferenceBuilder::part_by_keys(const OpenRange& node, const Cut& cut, Scrat
       target[at[side]++] = reference;
       keys[side].extend(PackedBox::of_point(reference.key));
     }
-    scratch.sides[chunk].keys = keys;
+    scratch.keys[chunk] = keys;
   });
   for (size_t i = 0; i < chunks_of(node.context); ++i) {
-    children.left.keys.extend(scratch.sides[i].keys[0]);
-    children.right.keys.extend(scratch.sides[i].keys[1]);
+    children.left.keys.extend(scratch.keys[i][0]);
+    children.right.keys.extend(scratch.keys[i][1]);
   }
 }
 

@@ -21,63 +21,44 @@ Reference with_box(const Reference& reference, const Bounds& box) {
 }  // namespace
 
 SpaceGrid::SpaceGrid(const Bounds& box) {
+  const Vec3 length = extent(box);
+  lo = FourFloats{box.lo.x, box.lo.y, box.lo.z, 0};
+  step = FourFloats{length.x, length.y, length.z, 0} * (1.0f / kSlices);
   for (int axis = 0; axis < 3; ++axis) {
-    const auto at = static_cast<size_t>(axis);
-    const double lo = static_cast<double>(box.lo[axis]), length = static_cast<double>(box.hi[axis]) - lo;
-    for (size_t i = 0; i < kPlanes; ++i)
-      planes_[at][i] = static_cast<float>(lo + length * (static_cast<double>(i + 1) / kSlices));
-    const auto scale = static_cast<float>(kSlices / length);
-    lo_[at] = box.lo[axis];
-    scale_[at] = std::isfinite(scale) && scale > 0 ? scale : 0;
+    const float candidate = kSlices / length[axis];
+    scale[axis] = candidate <= std::numeric_limits<float>::max() ? candidate : 0;
   }
-}
-
-size_t SpaceGrid::guess(int axis, float x) const {
-  const auto at = static_cast<size_t>(axis);
-  const float place = (x - lo_[at]) * scale_[at];
-  return place >= static_cast<float>(kPlanes) ? kPlanes : (place > 0 ? static_cast<size_t>(place) : 0);
-}
-
-size_t SpaceGrid::planes_up_to(int axis, float x) const {
-  size_t count = guess(axis, x);
-  while (count < kPlanes && plane(axis, count) <= x) ++count;
-  while (count > 0 && plane(axis, count - 1) > x) --count;
-  return count;
-}
-
-size_t SpaceGrid::planes_below(int axis, float x) const {
-  size_t count = guess(axis, x);
-  while (count < kPlanes && plane(axis, count) < x) ++count;
-  while (count > 0 && plane(axis, count - 1) >= x) --count;
-  return count;
 }
 
 void SpaceSlices::clear() {
   for (auto& axis : slices_) axis.fill(Slice{});
 }
 
-void SpaceSlices::add(const SpaceGrid& grid, const AxisOrder& order, std::span<const Reference> references,
-                      const ClipPrimitive& clip) {
-  for (const Reference& reference : references)
-    for (size_t i = 0; i < static_cast<size_t>(order.count); ++i) {
-      const int axis = order.choices[i].axis;
-      if (!grid.has(axis)) continue;
+void SpaceSlices::add(const SpaceGrid& grid, std::span<const Reference> references) {
+  constexpr float kTop = SpaceGrid::kSlices - 1, kLess = 1 - 0x1p-20f;  // an end on a plane lies below it
+  constexpr FourFloats last{kTop, kTop, kTop, kTop};
+  for (const Reference& reference : references) {
+    FourFloats lower = reference.box.lower;
+    lower[3] = 0;
+    const FourInts first_slices = truncated(lesser((lower - grid.lo) * grid.scale, last));
+    const FourInts last_slices = truncated(lesser((-reference.box.upper - grid.lo) * grid.scale * kLess, last));
+    for (int axis = 0; axis < 3; ++axis) {
       auto& slices = slices_[static_cast<size_t>(axis)];
-      const size_t first = grid.planes_up_to(axis, reference.box.lo(axis));
-      const size_t last = std::max(first, grid.planes_below(axis, reference.box.hi(axis)));
+      const auto first = static_cast<uint32_t>(first_slices[axis]);
+      const auto end = std::max(first, static_cast<uint32_t>(last_slices[axis]));
       ++slices[first].entries;
-      ++slices[last].exits;
-      if (first == last) {
-        slices[first].box.extend(reference.box);
-        continue;
+      ++slices[end].exits;
+      PackedBox part = reference.box;
+      for (uint32_t slice = first; slice < end; ++slice) {
+        const float plane = grid.plane(axis, slice + 1);
+        part.upper[axis] = -plane;
+        slices[slice].box.extend(part);
+        part.lower[axis] = plane;
       }
-      for (size_t slice = first; slice <= last; ++slice) {
-        const float lo = slice == first ? -kInf : grid.plane(axis, slice - 1);
-        const float hi = slice == last ? kInf : grid.plane(axis, slice);
-        const Bounds part = part_between(reference, axis, lo, hi, clip);
-        if (!is_empty(part)) slices[slice].box.extend(PackedBox::of(part));
-      }
+      part.upper[axis] = reference.box.upper[axis];
+      slices[end].box.extend(part);
     }
+  }
 }
 
 void SpaceSlices::merge(const SpaceSlices& other) {
@@ -90,7 +71,7 @@ void SpaceSlices::merge(const SpaceSlices& other) {
     }
 }
 
-void SpaceSlices::sweep(const NodeContext& node, const AxisChoice& axis, const SpaceGrid& grid, uint32_t room) {
+void SpaceSlices::sweep(const NodeContext& node, const AxisChoice& axis, const SpaceGrid& grid) {
   const auto& slices = slices_[static_cast<size_t>(axis.axis)];
   std::array<PackedBox, SpaceGrid::kSlices> above;  // of this slice and all after it
   std::array<uint32_t, SpaceGrid::kSlices> exits{};
@@ -103,26 +84,27 @@ void SpaceSlices::sweep(const NodeContext& node, const AxisChoice& axis, const S
   }
   PackedBox below;
   uint32_t entries = 0;
-  for (size_t i = 0; i < SpaceGrid::kPlanes; ++i) {
+  for (uint32_t i = 0; i + 1 < SpaceGrid::kSlices; ++i) {
     below.extend(slices[i].box);
     entries += slices[i].entries;
     const uint32_t left = entries, right = exits[i + 1];
-    if (left == 0 || right == 0 || left >= node.count || right >= node.count || left + right > room) continue;
+    if (left == 0 || right == 0 || left >= node.count || right >= node.count) continue;
     const Bounds left_box = below.unpacked(), right_box = above[i + 1].unpacked();
     if (is_empty(left_box) || is_empty(right_box)) continue;
-    candidates_.push_back({axis, grid.plane(axis.axis, i), left, right});
+    candidates_.push_back({axis, grid.plane(axis.axis, i + 1), left, right});
     sides_.push_back(left_box);
     sides_.push_back(right_box);
   }
 }
 
 Cut SpaceSlices::best_cut(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order,
-                          const SpaceGrid& grid, uint32_t room) {
+                          const SpaceGrid& grid) {
   candidates_.clear();
   sides_.clear();
   for (size_t i = 0; i < static_cast<size_t>(order.count); ++i)
-    if (grid.has(order.choices[i].axis)) sweep(node, order.choices[i], grid, room);
+    if (grid.scale[order.choices[i].axis] > 0) sweep(node, order.choices[i], grid);
   Cut best;
+  if (candidates_.empty()) return best;
   measures_.resize(sides_.size());
   strategy.measure(sides_, measures_, node);
   for (size_t i = 0; i < candidates_.size(); ++i) {
@@ -136,37 +118,59 @@ Cut SpaceSlices::best_cut(const ActiveStrategy& strategy, const NodeContext& nod
   return best;
 }
 
-void part_by_plane(const Cut& cut, std::span<const Reference> references, const ActiveStrategy& strategy,
-                   const NodeContext& node, const ClipPrimitive& clip, std::vector<Reference>& left,
-                   std::vector<Reference>& right) {
-  const double left_measure = static_cast<double>(cut.left_measure),
-               right_measure = static_cast<double>(cut.right_measure);
+void SpaceSides::part(const Cut& plane, std::span<const Reference> references, const ClipPrimitive& clip) {
+  left.clear();
+  right.clear();
+  torn.clear();
+  left_box = right_box = {};
+  const auto put_left = [&](const Reference& reference) {
+    left.push_back(reference);
+    left_box.extend(reference.box);
+  };
+  const auto put_right = [&](const Reference& reference) {
+    right.push_back(reference);
+    right_box.extend(reference.box);
+  };
   for (const Reference& reference : references) {
-    if (reference.box.lo(cut.axis) >= cut.plane) {
-      right.push_back(reference);
-    } else if (reference.box.hi(cut.axis) <= cut.plane) {
-      left.push_back(reference);
+    if (reference.box.lo(plane.axis) >= plane.plane) {
+      put_right(reference);
+    } else if (reference.box.hi(plane.axis) <= plane.plane) {
+      put_left(reference);
     } else {
-      const Bounds whole = reference.box.unpacked();
-      const std::array<Bounds, 2> grown{united(cut.left, whole), united(cut.right, whole)};
-      std::array<float, 2> measures{};
-      strategy.measure(grown, measures, node);
-      const double all_left = static_cast<double>(measures[0]) * cut.left_count + right_measure * (cut.right_count - 1);
-      const double all_right = left_measure * (cut.left_count - 1) + static_cast<double>(measures[1]) * cut.right_count;
-      if (all_left <= cut.cost && all_left <= all_right) {
-        left.push_back(reference);
-      } else if (all_right <= cut.cost) {
-        right.push_back(reference);
+      const Bounds lower = part_between(reference, plane.axis, -kInf, plane.plane, clip);
+      const Bounds upper = part_between(reference, plane.axis, plane.plane, kInf, clip);
+      if (is_empty(lower) && is_empty(upper)) {
+        put_left(reference);  // a callback that denies the primitive: keep it whole
+      } else if (is_empty(upper)) {
+        put_left(with_box(reference, lower));
+      } else if (is_empty(lower)) {
+        put_right(with_box(reference, upper));
       } else {
-        const Bounds lower = part_between(reference, cut.axis, -kInf, cut.plane, clip);
-        const Bounds upper = part_between(reference, cut.axis, cut.plane, kInf, clip);
-        if (is_empty(lower) && is_empty(upper)) {
-          left.push_back(reference);  // a callback that denies the primitive: keep it whole
-          continue;
-        }
-        if (!is_empty(lower)) left.push_back(with_box(reference, lower));
-        if (!is_empty(upper)) right.push_back(with_box(reference, upper));
+        torn.push_back({reference, lower, upper});
+        left_box.extend(PackedBox::of(lower));
+        right_box.extend(PackedBox::of(upper));
       }
+    }
+  }
+}
+
+void SpaceSides::mend(const Cut& cut, const ActiveStrategy& strategy, const NodeContext& node) {
+  const auto left_measure = static_cast<double>(cut.left_measure);
+  const auto right_measure = static_cast<double>(cut.right_measure);
+  for (const Torn& reference : torn) {
+    const Bounds whole = reference.whole.box.unpacked();
+    const std::array<Bounds, 2> grown{united(cut.left, whole), united(cut.right, whole)};
+    std::array<float, 2> measures{};
+    strategy.measure(grown, measures, node);
+    const double all_left = static_cast<double>(measures[0]) * cut.left_count + right_measure * (cut.right_count - 1);
+    const double all_right = left_measure * (cut.left_count - 1) + static_cast<double>(measures[1]) * cut.right_count;
+    if (all_left <= cut.cost && all_left <= all_right) {
+      left.push_back(reference.whole);
+    } else if (all_right <= cut.cost) {
+      right.push_back(reference.whole);
+    } else {
+      left.push_back(with_box(reference.whole, reference.lower));
+      right.push_back(with_box(reference.whole, reference.upper));
     }
   }
 }

@@ -1,5 +1,8 @@
 // Spatial splits after Stich, Friedrich and Dietrich, "Spatial splits in bounding volume hierarchies" (2009): planes
 // that cut primitives in two, with any measure in place of the surface area and a callback in place of triangles.
+//
+// The plane is found by cutting boxes, which is cheap and prices no plane too low; primitives themselves are cut at the
+// one plane that this finds, and its true price decides.
 #pragma once
 
 #include <array>
@@ -9,38 +12,26 @@
 
 namespace raygrain::builder {
 
-/// Planes at equal distances through a node's box, by axis.
-class SpaceGrid {
- public:
+/// Slices of equal thickness through a node's box, by axis.
+struct SpaceGrid {
   static constexpr uint32_t kSlices = 16;
-  static constexpr size_t kPlanes = kSlices - 1;
+
+  FourFloats lo{}, scale{}, step{};  // scale 0: the axis has no length
 
   explicit SpaceGrid(const Bounds& box);
-
-  float plane(int axis, size_t i) const { return planes_[static_cast<size_t>(axis)][i]; }
-  bool has(int axis) const { return scale_[static_cast<size_t>(axis)] > 0; }
-  size_t planes_up_to(int axis, float x) const;  // number of planes <= x
-  size_t planes_below(int axis, float x) const;  // number of planes < x
-
- private:
-  size_t guess(int axis, float x) const;
-
-  std::array<std::array<float, kPlanes>, 3> planes_{};
-  std::array<float, 3> lo_{}, scale_{};
+  float plane(int axis, uint32_t below) const { return lo[axis] + step[axis] * static_cast<float>(below); }
 };
 
-/// The parts of references in each slice; one per chunk of references.
+/// The parts of references' boxes in each slice; one per chunk of references.
 class SpaceSlices {
  public:
   void clear();
-  void add(const SpaceGrid& grid, const AxisOrder& order, std::span<const Reference> references,
-           const ClipPrimitive& clip);
+  void add(const SpaceGrid& grid, std::span<const Reference> references);
   void merge(const SpaceSlices& other);
 
-  /// The cheapest plane that leaves fewer references than the node has on either side and at most `room` on both
-  /// together.
-  Cut best_cut(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order, const SpaceGrid& grid,
-               uint32_t room);
+  /// The cheapest plane that leaves fewer references than the node has on either side. Counts and boxes are estimates
+  /// from above.
+  Cut best_cut(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order, const SpaceGrid& grid);
 
  private:
   struct Slice {
@@ -52,7 +43,7 @@ class SpaceSlices {
     float plane;
     uint32_t left_count, right_count;
   };
-  void sweep(const NodeContext& node, const AxisChoice& axis, const SpaceGrid& grid, uint32_t room);
+  void sweep(const NodeContext& node, const AxisChoice& axis, const SpaceGrid& grid);
 
   std::array<std::array<Slice, SpaceGrid::kSlices>, 3> slices_;
   std::vector<Candidate> candidates_;
@@ -60,10 +51,22 @@ class SpaceSlices {
   std::vector<float> measures_;
 };
 
-/// The two sides of a spatial cut. A reference that the plane cuts is cut, or goes to one side whole where that is
-/// cheaper ("unsplitting"), judged by the sides as they were when the plane was chosen: so no order matters.
-void part_by_plane(const Cut& cut, std::span<const Reference> references, const ActiveStrategy& strategy,
-                   const NodeContext& node, const ClipPrimitive& clip, std::vector<Reference>& left,
-                   std::vector<Reference>& right);
+/// The references of one chunk on either side of a plane, and those that it cuts.
+struct SpaceSides {
+  struct Torn {
+    Reference whole;
+    Bounds lower, upper;
+  };
+  std::vector<Reference> left, right;
+  std::vector<Torn> torn;
+  PackedBox left_box, right_box;
+
+  /// Sorts references to the sides of the plane and cuts those that it crosses.
+  void part(const Cut& plane, std::span<const Reference> references, const ClipPrimitive& clip);
+
+  /// Moves each torn reference to both sides in parts, or whole to one side where that is cheaper ("unsplitting"),
+  /// judged by the sides with all parts, as `cut` holds them: so no order matters.
+  void mend(const Cut& cut, const ActiveStrategy& strategy, const NodeContext& node);
+};
 
 }  // namespace raygrain::builder

@@ -118,7 +118,9 @@ void check_supply(const Recipe& recipe, const Registry& registry, const Heuristi
 Registry default_registry() {
   return {default_measures(),
           default_orientations(),
-          {{"paper", "Algorithm 1 of the paper", build_paper}, {"binned", "binned top-down, all axes", build_binned}}};
+          {{"paper", "Algorithm 1 of the paper", build_paper},
+           {"binned", "binned top-down, all axes, parallel", build_binned},
+           {"spatial", "binned top-down with planes that cut triangles, parallel", build_spatial}}};
 }
 
 std::string recipe_name(const Recipe& recipe) {
@@ -159,6 +161,7 @@ BuildOptions make_build_options(const Recipe& recipe, const Registry& registry, 
   options.fallback->orientation = longest_axis_orientation();
   options.parameters = recipe.parameters;
   options.merge_leaves = true;
+  options.clip = input.clip;
   if (orientation.all_axes) {
     options.parameters.split_plane_quality_threshold = 0;
     options.parameters.excellent_ratio = 0;

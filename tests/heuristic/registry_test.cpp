@@ -180,7 +180,8 @@ TEST(Trees, OfAllRecipesAreValid) {
             const Recipe recipe{measure.name, orientation.name, builder.name, {}};
             SCOPED_TRACE(testing::Message() << mesh.name << " " << recipe_name(recipe) << " " << area.name);
             BuildLog log;
-            const Bvh bvh = build_tree(recipe, kRegistry, {&area, rays}, bounds, centroids, &log);
+            const auto clip = [&](uint32_t i, const Bounds& box) { return clip_triangle_bounds(mesh.mesh, i, box); };
+            const Bvh bvh = build_tree(recipe, kRegistry, {&area, rays, clip}, bounds, centroids, &log);
             EXPECT_EQ(find_defect(bvh, bounds), std::nullopt);
             EXPECT_EQ(log.nodes.size(), bvh.nodes.size());
             if (builder.name != "paper" || orientation.name != "ALL") continue;
