@@ -166,14 +166,28 @@ Bvh build_paper(std::span<const Bounds> bounds, std::span<const Vec3> centroids,
 Bvh build_binned(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                  BuildLog* log = nullptr);
 
+/// Full sweep: as build_binned, but every position between two centroids is a candidate (of any key that `partition`
+/// gives). The reference for quality; sorts every node's primitives, so much slower. Ignores `bins` and `planes` too.
+Bvh build_sweep(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
+                BuildLog* log = nullptr);
+
 /// As build_binned, and where the sides of its best split overlap too much, planes through space that cut primitives in
 /// two: Stich, Friedrich and Dietrich, "Spatial splits in bounding volume hierarchies" (2009), under any measure. A
 /// primitive that a plane cuts goes whole to one side where that is cheaper. 16 slices per axis of the node's box; room
-/// for added references (`spatial.budget`) is handed down in proportion to counts; the plane is found by cutting boxes and priced by cutting primitives. The tree's leaves may hold a
-/// primitive more than once: Bvh::split_references. Parallel, and the same tree for any number of threads. Same errors;
-/// kUsage without `clip` or where `cost`, `planes`, `partition` or `stop` is replaced.
+/// for added references (`spatial.budget`) is handed down in proportion to counts; the plane is found by cutting boxes
+/// and priced by cutting primitives. The tree's leaves may hold a primitive more than once: Bvh::split_references.
+/// Parallel, and the same tree for any number of threads. Same errors; kUsage without `clip` or where `cost`, `planes`,
+/// `partition` or `stop` is replaced.
 Bvh build_spatial(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                   BuildLog* log = nullptr);
+
+/// For trees that must be there soon: Tessari, Dittebrand, Doyle and Benthin, "Stochastic subsets for BVH construction"
+/// (2023). build_binned over one in 16 primitives, drawn with `seed`; its nodes with fewer than 32 of them are
+/// clusters; all other primitives go down to the nearer box; build_binned in each cluster. Fewer than 8192 primitives,
+/// and strategies that replace `cost`, `planes`, `partition` or `stop`: build_binned. Parallel, and the same tree for
+/// any number of threads. Same errors.
+Bvh build_subset(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
+                 BuildLog* log = nullptr);
 
 /// Throws Error (kUsage, naming the field) for values out of range.
 void validate(const BuildOptions& options);

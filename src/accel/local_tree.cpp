@@ -3,7 +3,7 @@
 
 #include "raygrain/accelerator.h"
 
-#include "accel/estimate.h"
+#include "build/estimate.h"
 
 namespace raygrain {
 

@@ -4,6 +4,7 @@
 #include "raygrain/error.h"
 
 #include "build/build_support.h"
+#include "build/estimate.h"
 #include "support/mesh_families.h"
 
 namespace raygrain::test {
@@ -71,9 +72,39 @@ TEST(ParallelBuild, SmallMeshesAreTheSameToo) {
   }
 }
 
+TEST(Subset, GivesTheSameTreeForAnyNumberOfThreads) {
+  for (uint64_t seed = 0; seed < seed_count(4); ++seed) {
+    SCOPED_TRACE(seed);
+    const Prims prims = random_prims(30000, seed);
+    BuildOptions options;
+    options.seed = seed;
+    options.threads = 1;
+    options.merge_leaves = seed % 2 == 0;
+    BuildLog log;
+    const Bvh one = build_subset(prims.bounds, prims.centroids, options, &log);
+    EXPECT_EQ(find_defect(one, prims.bounds), std::nullopt);
+    EXPECT_EQ(log.nodes.size(), one.nodes.size());
+    for (size_t i = 0; i < one.nodes.size(); ++i) ASSERT_EQ(one.nodes[i].is_leaf(), log.nodes[i].axis < 0);
+    options.threads = 8;
+    EXPECT_TRUE(identical(one, build_subset(prims.bounds, prims.centroids, options, nullptr)));
+    // Not far from the best, and another subset for another seed.
+    EXPECT_LT(estimated_cost(one, {}), 1.2 * estimated_cost(binned(prims, options), {}));
+    ++options.seed;
+    EXPECT_FALSE(identical(one, build_subset(prims.bounds, prims.centroids, options, nullptr)));
+  }
+}
+
+TEST(Subset, CopesWithHugePiles) {
+  Prims prims;
+  for (int i = 0; i < 20000; ++i) prims.add({{1, 2, 3}, {2, 3, 4}});
+  const Bvh bvh = build_subset(prims.bounds, prims.centroids, {}, nullptr);
+  EXPECT_EQ(find_defect(bvh, prims.bounds), std::nullopt);
+  EXPECT_LE(largest_leaf(bvh), 4u);
+}
+
 TEST(Progress, RisesToOne) {
   const Prims prims = random_prims(100000, 1);
-  for (const auto build : {build_paper, build_binned}) {
+  for (const auto build : {build_paper, build_binned, build_subset}) {
     BuildOptions options;
     double last = 0;
     size_t calls = 0;

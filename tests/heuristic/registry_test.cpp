@@ -190,6 +190,12 @@ TEST(Trees, OfAllRecipesAreValid) {
   }
 }
 
+TEST(Qualities, NameBuilders) {
+  for (const auto& [text, builder] : {std::pair{"fast", "subset"}, {"balanced", "binned"}, {"best", "spatial"}})
+    EXPECT_EQ(builder_name(parse_quality(text)), std::string(builder));
+  EXPECT_EQ(error_of([] { parse_quality("Best"); }).code, ErrorCode::kUsage);
+}
+
 TEST(Registry, OwnRowsWorkByName) {
   Registry own = default_registry();
   own.measures.push_back({"LENGTH", "sum of edges", false, false, [](const HeuristicInput&) {
