@@ -199,8 +199,9 @@ Action declare_trace(Arguments& arguments) {
   arguments.group("Trees");
   arguments.text("--local", "RECIPE", options->local, "Recipe of each area's tree [PAH+ALL@binned]");
   arguments.text("--global", "RECIPE", options->global, "Recipe of the tree for all other rays [SAH+ALL@binned]");
-  arguments.text("--quality", "NAME", options.quality, "Of that tree: fast, balanced or best, in place of its builder");
-  arguments.flag("--reinsert", options.reinsert, "Improve that tree by reinsertion, under its measure");
+  arguments.text("--quality", "NAME", options->quality,
+                 "Of that tree: fast, balanced or best, in place of its builder");
+  arguments.flag("--reinsert", options->reinsert, "Improve that tree by reinsertion, under its measure");
   arguments.flag("--verify", options->verify, "Check every hit against brute force (slow)");
   add_common(arguments, options->common);
   return [options] { return trace(*options); };
