@@ -28,13 +28,15 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr size_t kChunk = 1024;  // rays that one thread takes at a time
+constexpr const char* kDefaultGlobal = "SAH+ALL@binned";
 
 struct Options {
   CommonOptions common;
   AreaOptions areas;
   std::string scene, rays, set, output;
-  std::string local = "PAH+ALL@binned", global = "SAH+ALL@binned";
-  bool verify = false;
+  std::string local = "PAH+ALL@binned", global = kDefaultGlobal;
+  std::string quality;
+  bool verify = false, reinsert = false;
 };
 
 struct Traced {
@@ -48,6 +50,12 @@ AcceleratorOptions accelerator_options(const Options& options) {
   AcceleratorOptions result;
   result.local = parse_recipe(options.local, result.registry);
   result.global = parse_recipe(options.global, result.registry);
+  if (!options.quality.empty()) {
+    if (options.global.find('@') != std::string::npos && options.global != kDefaultGlobal)
+      fail_usage("--quality", "cannot be combined with a recipe that names its builder", "Leave one of them out");
+    result.quality = parse_quality(options.quality);
+  }
+  result.reinsert = options.reinsert;
   result.threads = options.common.thread_count();
   result.samples = [](const InfluenceArea* area) { return area ? sample_rays(*area, 1) : std::vector<Ray>{}; };
   return result;
@@ -210,6 +218,9 @@ Action declare_trace(Arguments& arguments) {
   arguments.group("Trees");
   arguments.text("--local", "RECIPE", options->local, "Recipe of each area's tree [PAH+ALL@binned]");
   arguments.text("--global", "RECIPE", options->global, "Recipe of the tree for all other rays [SAH+ALL@binned]");
+  arguments.text("--quality", "NAME", options->quality,
+                 "Of that tree: fast, balanced or best, in place of its builder");
+  arguments.flag("--reinsert", options->reinsert, "Improve that tree by reinsertion, under its measure");
   arguments.flag("--verify", options->verify, "Check every hit against brute force (slow)");
   add_common(arguments, options->common);
   return [options] { return trace(*options); };

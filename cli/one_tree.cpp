@@ -4,6 +4,8 @@
 
 #include "raygrain/analyze.h"
 #include "raygrain/compare.h"
+#include "raygrain/rays.h"
+#include "raygrain/refine.h"
 
 #include "base/nearest_name.h"
 #include "base/timer.h"
@@ -37,6 +39,16 @@ std::optional<InfluenceArea> pick_area(const TreeOptions& options, const Scene& 
   fail_usage("--area", "there is no area '" + options.area + "'", known_names(areas, options.area));
 }
 
+/// The log says nothing about nodes that reinsertion moved.
+void improve(OneTree& tree, unsigned threads) {
+  Bvh better = *tree.tree;
+  ReinsertOptions options;
+  options.threads = threads;
+  reinsert(better, tree.measure(), options);
+  tree.log.nodes.assign(better.nodes.size(), {});
+  tree.tree = std::make_shared<const Bvh>(std::move(better));
+}
+
 }  // namespace
 
 void add_tree_options(Arguments& arguments, TreeOptions& options) {
@@ -48,6 +60,8 @@ void add_tree_options(Arguments& arguments, TreeOptions& options) {
   arguments.text("--area", "NAME", options.area, "Which area, where there are several");
   arguments.flag("--whole", options.whole, "The tree of the whole scene, of no area");
   arguments.group("Tree");
+  arguments.text("--quality", "NAME", options.quality, "fast, balanced or best: replaces the recipe's builder");
+  arguments.flag("--reinsert", options.reinsert, "Improve the tree by reinsertion, under the recipe's measure");
   arguments.whole("--seed", options.seed, {}, "Of all rays");
 }
 
@@ -70,14 +84,19 @@ Recipe check_tree_options(const TreeOptions& options, const Registry& registry) 
   check_area_options(options.areas);
   if (options.whole && !options.area.empty())
     fail_usage("--whole", "cannot be combined with --area", "Leave one of them out");
-  return parse_recipe(options.recipe, registry);
+  Recipe recipe = parse_recipe(options.recipe, registry);
+  if (options.quality.empty()) return recipe;
+  if (options.recipe.find('@') != std::string::npos)
+    fail_usage("--quality", "cannot be combined with a recipe that names its builder", "Leave one of them out");
+  recipe.builder = builder_name(parse_quality(options.quality));
+  return recipe;
 }
 
 OneTree build_one_tree(const TreeOptions& options, const Scene& scene, const std::vector<InfluenceArea>& areas,
                        Progress& progress) {
   OneTree result;
   result.registry = default_registry();
-  result.recipe = parse_recipe(options.recipe, result.registry);
+  result.recipe = check_tree_options(options, result.registry);
   const bool samples = needs_samples(result.recipe, result.registry);
   result.area = pick_area(options, scene, areas, samples || needs_area(result.recipe, result.registry));
   if (samples) result.samples = sample_rays(*result.area, options.seed);
@@ -92,6 +111,7 @@ OneTree build_one_tree(const TreeOptions& options, const Scene& scene, const std
     result.tree =
         std::make_shared<const Bvh>(build_global_tree(scene.mesh, result.recipe, result.registry, &result.log));
   }
+  if (options.reinsert) improve(result, options.common.thread_count());
   result.seconds = timer.seconds();
   return result;
 }

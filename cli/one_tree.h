@@ -21,6 +21,8 @@ struct TreeOptions {
   AreaOptions areas;
   std::string scene, recipe, area;  // area: a name, or empty
   bool whole = false;               // of the whole scene, whatever areas there are
+  std::string quality;              // replaces the recipe's builder; or empty
+  bool reinsert = false;
   uint64_t seed = 1;
 };
 void add_tree_options(Arguments& arguments, TreeOptions& options);

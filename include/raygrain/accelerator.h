@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,6 +27,8 @@ using SampleSource = std::function<std::vector<Ray>(const InfluenceArea* area)>;
 struct AcceleratorOptions {
   Recipe local{"PAH", "ALL", "binned", {}};   // of each area's tree
   Recipe global{"SAH", "ALL", "binned", {}};  // of the tree that answers all other rays
+  std::optional<Quality> quality;             // of the global tree: replaces its recipe's builder
+  bool reinsert = false;                      // improve the global tree by reinsertion, under its own measure
   TopLevelOptions top_level;
   Registry registry = default_registry();
   MembershipRule membership;  // empty: overlaps(region, a, b, c)

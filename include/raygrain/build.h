@@ -80,6 +80,19 @@ struct BuildStrategy {
   StopRule stop;                 // stop_by_parameters
 };
 
+/// A box around the part of a primitive that lies in a box, empty only where no part does: what spatial splits need to
+/// know of primitives. Must be safe to call from several threads.
+using ClipPrimitive = std::function<Bounds(uint32_t primitive, const Bounds& box)>;
+
+/// build_spatial: when a plane may cut primitives in two.
+struct SpatialParameters {
+  /// Planes that cut primitives are tried where the sides of the best split overlap in more than this part of the
+  /// root's measure (alpha of Stich et al.); in [0, 1].
+  float overlap = 1e-4f;
+  /// Most references that splits may add, as a share of the primitives; in [0, 16].
+  float budget = 0.5f;
+};
+
 /// Options of every builder. The default is a good general tree.
 struct BuildOptions {
   BuildStrategy strategy;
@@ -93,6 +106,14 @@ struct BuildOptions {
   bool merge_leaves = false;  // build_binned: make a leaf of up to `leaf_size` where splitting costs more
   uint32_t leaf_size = 4;
   uint64_t seed = 1;  // of NodeContext::seed
+  /// Threads that build_binned and build_spatial use; 0 = all. The tree is the same for any number. With more than one,
+  /// `measure` and `orientation` are called from several threads.
+  unsigned threads = 0;
+  /// Called now and then, never by two threads at once, with the finished share of the build in [0, 1], not descending.
+  /// false cancels the build: Error kCancelled.
+  std::function<bool(double done)> progress;
+  ClipPrimitive clip;  // build_spatial
+  SpatialParameters spatial;
 };
 
 /// Figure 9: ratio <= excellent: satisfied; next quality >= threshold: try; ratio <= acceptable: satisfied; else fall
@@ -120,6 +141,7 @@ struct BuildTimes {
 struct BuildLog {
   std::vector<NodeLog> nodes;
   BuildTimes times;
+  size_t peak_bytes = 0;  // most memory that the builder held at once, the tree included
 };
 
 /// Algorithm 1 of the paper, iterative: orientations in the strategy's order, `bins` slices each, the decision of
@@ -134,11 +156,37 @@ Bvh build_paper(std::span<const Bounds> bounds, std::span<const Vec3> centroids,
                 BuildLog* log = nullptr);
 
 /// Binned top-down construction after Wald, "On fast construction of SAH-based bounding volume hierarchies" (2007): one
-/// pass over the primitives for all axes, prefix and suffix sweeps over the bins, the best plane of all axes that the
-/// orientation strategy admits: those whose quality reaches split_plane_quality_threshold, or else the best. Bins the
-/// box of the centroids. Of planes with equal cost the one with the most even counts wins. Ignores `fallback` and
-/// `decision`. Same errors.
+/// pass over the primitives for all axes, prefix and suffix sweeps over the slices, the best plane of all axes that the
+/// orientation strategy admits: those whose quality reaches split_plane_quality_threshold, or else the best. Cuts the
+/// box of the centroids into equal slices: `bins`, but no more than 4 + count / 2. Of planes with equal cost the one
+/// with the most even counts wins. Ignores `fallback` and `decision`. Same errors, and kCancelled.
+///
+/// Parallel, and the same tree for any number of threads; one thread where `cost`, `planes`, `partition` or `stop` is
+/// replaced (`planes` and `partition` also see all `bins`).
 Bvh build_binned(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
+                 BuildLog* log = nullptr);
+
+/// Full sweep: as build_binned, but every position between two centroids is a candidate (of any key that `partition`
+/// gives). The reference for quality; sorts every node's primitives, so much slower. Ignores `bins` and `planes` too.
+Bvh build_sweep(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
+                BuildLog* log = nullptr);
+
+/// As build_binned, and where the sides of its best split overlap too much, planes through space that cut primitives in
+/// two: Stich, Friedrich and Dietrich, "Spatial splits in bounding volume hierarchies" (2009), under any measure. A
+/// primitive that a plane cuts goes whole to one side where that is cheaper. 16 slices per axis of the node's box; room
+/// for added references (`spatial.budget`) is handed down in proportion to counts; the plane is found by cutting boxes
+/// and priced by cutting primitives. The tree's leaves may hold a primitive more than once: Bvh::split_references.
+/// Parallel, and the same tree for any number of threads. Same errors; kUsage without `clip` or where `cost`, `planes`,
+/// `partition` or `stop` is replaced.
+Bvh build_spatial(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
+                  BuildLog* log = nullptr);
+
+/// For trees that must be there soon: Tessari, Dittebrand, Doyle and Benthin, "Stochastic subsets for BVH construction"
+/// (2023). build_binned over one in 16 primitives, drawn with `seed`; its nodes with fewer than 32 of them are
+/// clusters; all other primitives go down to the nearer box; build_binned in each cluster. Fewer than 8192 primitives,
+/// and strategies that replace `cost`, `planes`, `partition` or `stop`: build_binned. Parallel, and the same tree for
+/// any number of threads. Same errors.
+Bvh build_subset(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                  BuildLog* log = nullptr);
 
 /// Throws Error (kUsage, naming the field) for values out of range.

@@ -24,7 +24,10 @@ struct Bvh {
     bool is_leaf() const { return count != 0; }
   };
   std::vector<Node> nodes;
-  std::vector<uint32_t> prims;  // primitive (triangle) ids, each once
+  std::vector<uint32_t> prims;  // primitive (triangle) ids, each once unless references are split
+  /// Several leaves may hold parts of one primitive: each leaf's box then holds only the part of the primitive that it
+  /// answers for, and `prims` may be longer than the number of primitives.
+  bool split_references = false;
 };
 
 /// Bytes held by the tree.
@@ -35,7 +38,9 @@ uint32_t max_level(const Bvh& bvh);
 
 /// The first thing wrong with a tree over primitives with these boxes (ids index `primitive_bounds`), as a sentence
 /// that names the node, or nothing: links in range, acyclic and complete; each of `expected_prims` in exactly one leaf
-/// (empty: every box); each box holding its children and primitives; depth within kMaxTreeLevels; no NaN.
+/// (empty: every box); each box holding its children and primitives; depth within kMaxTreeLevels; no NaN. Of split
+/// references: each in at least one leaf, in none twice, every leaf's box meeting its box, and their leaves' boxes
+/// together reaching as far as it does.
 std::optional<std::string> find_defect(const Bvh& bvh, std::span<const Bounds> primitive_bounds,
                                        std::span<const uint32_t> expected_prims = {});
 

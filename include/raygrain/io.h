@@ -64,6 +64,14 @@ void save_hits(std::span<const Hit> hits, const std::string& path);
 /// is not finite is null. `info_json` is a rendered JSON object for "info"; empty: {}.
 void save_tree_json(const Bvh& bvh, const std::string& info_json, const std::string& path);
 
+/// A built tree as a file of its own: little endian, with a version and a checksum; docs/formats.md has the bytes.
+void save_tree(const Bvh& bvh, const std::string& path);
+
+/// Reads what save_tree wrote. Throws Error: kNotFound, kUnreadable, kMalformed (foreign, damaged or cut files, and
+/// links that make no sound tree), kUnsupported (another version). Whether the boxes hold their primitives only
+/// find_defect can say, who is given these: trees from others should be passed to it, as the Accelerator does.
+Bvh load_tree(const std::string& path);
+
 /// Writes a whole file or none: into a temporary file beside `path`, flushed, then renamed over it. A failure throws
 /// Error (kUnwritable) and leaves no trace.
 void write_file_atomically(const std::string& path, const std::function<void(std::ostream&)>& write);

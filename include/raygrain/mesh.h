@@ -22,6 +22,10 @@ struct TriangleMesh {
 /// The box of one triangle.
 Bounds triangle_bounds(const TriangleMesh& mesh, size_t triangle);
 
+/// A box that holds all of the triangle's part in `box` (both closed) and exceeds that part by float rounding only;
+/// empty where that proves that they do not meet. Lies inside `box` and inside the triangle's own box.
+Bounds clip_triangle_bounds(const TriangleMesh& mesh, size_t triangle, const Bounds& box);
+
 /// The barycentre (mean of the three vertices) of one triangle, finite for every finite triangle.
 Vec3 triangle_centroid(const TriangleMesh& mesh, size_t triangle);
 

@@ -18,6 +18,7 @@
 #include "raygrain/orientation.h"
 #include "raygrain/ray.h"
 #include "raygrain/rays.h"
+#include "raygrain/refine.h"
 #include "raygrain/region.h"
 #include "raygrain/registry.h"
 #include "raygrain/report.h"

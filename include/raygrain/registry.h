@@ -12,10 +12,12 @@
 
 namespace raygrain {
 
-/// What a named heuristic may be made for. `area` may be null (global trees); `samples` may be empty.
+/// What a named heuristic may be made for. `area` may be null (global trees); `samples` may be empty. `clip` cuts the
+/// primitives, for builders that need it.
 struct HeuristicInput {
   const InfluenceArea* area = nullptr;
-  std::span<const Ray> samples;
+  std::span<const Ray> samples = {};
+  ClipPrimitive clip = {};
 };
 
 struct MeasureEntry {
@@ -31,6 +33,15 @@ struct OrientationEntry {
   std::function<SplitOrientation(const HeuristicInput&)> make;
 };
 
+/// How much time a tree is worth, by the builder that makes it: subset, binned, spatial.
+enum class Quality { kFast, kBalanced, kBest };
+
+/// "subset", "binned" or "spatial".
+const char* builder_name(Quality quality);
+
+/// fast, balanced or best. Throws Error (kUsage) for anything else.
+Quality parse_quality(std::string_view text);
+
 using BuildFunction = Bvh (*)(std::span<const Bounds>, std::span<const Vec3>, const BuildOptions&, BuildLog*);
 
 struct BuilderEntry {
@@ -42,7 +53,7 @@ struct BuilderEntry {
 struct Registry {
   std::vector<MeasureEntry> measures;          // SAH, PAH, PAH-UNCULLED, DIR, SAMPLED
   std::vector<OrientationEntry> orientations;  // LSPH, SPFH, ALL, ROBIN
-  std::vector<BuilderEntry> builders;          // paper, binned
+  std::vector<BuilderEntry> builders;          // paper, binned, sweep, spatial, subset
 };
 
 Registry default_registry();

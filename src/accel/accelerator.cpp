@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "raygrain/error.h"
+#include "raygrain/refine.h"
 
 #include "accel/search.h"
 #include "base/parallel.h"
@@ -77,6 +78,19 @@ struct Trees {
   std::shared_ptr<const Bvh> global;
 };
 
+Bvh build_global(const TriangleMesh& mesh, const AcceleratorOptions& options, std::span<const Ray> samples) {
+  Recipe recipe = options.global;
+  if (options.quality) recipe.builder = builder_name(*options.quality);
+  Bvh tree = build_global_tree(mesh, recipe, options.registry, nullptr, samples);
+  if (!options.reinsert) return tree;
+  const BuildOptions build = make_build_options(recipe, options.registry, {nullptr, samples});
+  ReinsertOptions reinsertion;
+  reinsertion.threads = options.threads;
+  reinsertion.costs = build.costs;
+  raygrain::reinsert(tree, build.strategy.measure, reinsertion);
+  return tree;
+}
+
 /// One task per tree, the global one first because it is the longest.
 Trees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> areas, const AcceleratorOptions& options) {
   const auto samples = [&](const InfluenceArea* area) {
@@ -86,8 +100,7 @@ Trees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> areas
   trees.locals.resize(areas.size());
   const auto build = [&](size_t task) {
     if (task == 0) {
-      trees.global = std::make_shared<const Bvh>(
-          build_global_tree(mesh, options.global, options.registry, nullptr, samples(nullptr)));
+      trees.global = std::make_shared<const Bvh>(build_global(mesh, options, samples(nullptr)));
     } else {
       const InfluenceArea& area = areas[task - 1];
       trees.locals[task - 1] =

@@ -3,7 +3,7 @@
 
 #include "raygrain/accelerator.h"
 
-#include "accel/estimate.h"
+#include "build/estimate.h"
 
 namespace raygrain {
 
@@ -29,7 +29,9 @@ LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, 
     centroids.push_back(triangle_centroid(mesh, i));
   }
 
-  const HeuristicInput input{&area, samples};
+  const HeuristicInput input{&area, samples, [&](uint32_t primitive, const Bounds& box) {
+                               return clip_triangle_bounds(mesh, members[primitive], box);
+                             }};
   LocalTree local;
   local.area = area;
   Bvh tree = build_tree(recipe, registry, input, bounds, centroids, &local.log);
@@ -42,8 +44,10 @@ LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, 
 
 Bvh build_global_tree(const TriangleMesh& mesh, const Recipe& recipe, const Registry& registry, BuildLog* log,
                       std::span<const Ray> samples) {
-  return build_tree(recipe, registry, HeuristicInput{nullptr, samples}, triangle_bounds(mesh), triangle_centroids(mesh),
-                    log);
+  const HeuristicInput input{nullptr, samples, [&mesh](uint32_t triangle, const Bounds& box) {
+                               return clip_triangle_bounds(mesh, triangle, box);
+                             }};
+  return build_tree(recipe, registry, input, triangle_bounds(mesh), triangle_centroids(mesh), log);
 }
 
 }  // namespace raygrain

@@ -6,6 +6,7 @@
 
 #include "build/bins.h"
 #include "build/laps.h"
+#include "build/reference_builder.h"
 #include "build/strategy.h"
 #include "build/top_down.h"
 
@@ -19,6 +20,7 @@ using builder::Choice;
 using builder::Input;
 using builder::OpenNode;
 
+/// With everything that a strategy may replace; one thread.
 class BinnedBuilder {
  public:
   BinnedBuilder(const Input& input, const BuildOptions& options, builder::Laps& laps)
@@ -31,7 +33,7 @@ class BinnedBuilder {
     splitter.choose = [this](const OpenNode& node, std::span<const uint32_t> prims, NodeLog& note) {
       return choose(node, prims, note);
     };
-    return builder::build_top_down(input_, options_.seed, splitter, laps_, log);
+    return builder::build_top_down(input_, options_, splitter, laps_, log);
   }
 
  private:
@@ -105,7 +107,9 @@ Bvh build_binned(std::span<const Bounds> bounds, std::span<const Vec3> centroids
   builder::check_input(input);
   if (log) *log = {};
   builder::Laps laps(log ? &log->times : nullptr);
-  Bvh bvh = BinnedBuilder(input, options, laps).build(log);
+  Bvh bvh = builder::ReferenceBuilder::serves(input, options.strategy)
+                ? builder::ReferenceBuilder(input, options, false).build(log)
+                : BinnedBuilder(input, options, laps).build(log);
   laps.finish();
   return bvh;
 }

@@ -26,6 +26,10 @@ class Validation {
 
   Defect run(std::span<const uint32_t> expected) {
     if (Defect defect = mark_expected(expected)) return defect;
+    if (bvh_.split_references) {
+      covered_.assign(boxes_.size(), Bounds{});
+      last_leaf_.assign(boxes_.size(), kNoLeaf);
+    }
     if (bvh_.nodes.empty()) return check_empty();
     reached_.assign(bvh_.nodes.size(), false);
     reached_[0] = true;
@@ -95,6 +99,10 @@ class Validation {
     for (size_t i = leaf.first; i < end; ++i) {
       const uint32_t prim = bvh_.prims[i];
       if (prim >= boxes_.size()) return holds(node, prim) + ", which has no box";
+      if (bvh_.split_references) {
+        if (Defect defect = check_part(node, prim)) return defect;
+        continue;
+      }
       if (!missing_[prim]) return holds(node, prim) + ", which another leaf holds too or which is not expected";
       missing_[prim] = false;
       if (!contains(leaf.bounds, boxes_[prim])) return holds(node, prim) + ", which is not inside its box";
@@ -103,7 +111,31 @@ class Validation {
     return std::nullopt;
   }
 
+  /// Which part of a primitive a leaf answers for cannot be seen here: only that all leaves together reach far enough.
+  Defect check_part(uint32_t node, uint32_t prim) {
+    if (!missing_[prim]) return holds(node, prim) + ", which is not expected";
+    if (last_leaf_[prim] == node) return holds(node, prim) + " twice";
+    last_leaf_[prim] = node;
+    const Bounds& box = bvh_.nodes[node].bounds;
+    if (is_empty(intersected(box, boxes_[prim]))) return holds(node, prim) + ", which does not reach into its box";
+    covered_[prim].extend(box);
+    return std::nullopt;
+  }
+
+  Defect check_covered() const {
+    for (size_t prim = 0; prim < missing_.size(); ++prim)
+      if (missing_[prim] && !is_empty(covered_[prim]) && !contains(covered_[prim], boxes_[prim]))
+        return "primitive " + std::to_string(prim) + " reaches beyond all leaves that hold it";
+    return std::nullopt;
+  }
+
   Defect check_all_found() const {
+    if (bvh_.split_references && !bvh_.nodes.empty()) {
+      for (size_t prim = 0; prim < missing_.size(); ++prim)
+        if (missing_[prim] && last_leaf_[prim] == kNoLeaf)
+          return "primitive " + std::to_string(prim) + " is in no leaf";
+      return check_covered();
+    }
     for (size_t prim = 0; prim < missing_.size(); ++prim)
       if (missing_[prim]) return "primitive " + std::to_string(prim) + " is in no leaf";
     return std::nullopt;
@@ -120,7 +152,10 @@ class Validation {
 
   const Bvh& bvh_;
   std::span<const Bounds> boxes_;
-  std::vector<bool> missing_, reached_;
+  static constexpr uint32_t kNoLeaf = ~uint32_t{0};
+  std::vector<bool> missing_, reached_;  // of split references: expected, whether found or not
+  std::vector<Bounds> covered_;          // split references only: the boxes of a primitive's leaves
+  std::vector<uint32_t> last_leaf_;
   size_t listed_ = 0;
 };
 

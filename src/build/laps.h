@@ -18,6 +18,10 @@ class Laps {
     times_->*part += now - last_;
     last_ = now;
   }
+  /// Charges it to nothing.
+  void skip() {
+    if (times_) last_ = timer_.seconds();
+  }
   void finish() {
     if (times_) times_->total = timer_.seconds();
   }

@@ -38,7 +38,7 @@ class PaperBuilder {
     splitter.choose = [this](const OpenNode& node, std::span<const uint32_t> prims, NodeLog& note) {
       return choose(node, prims, note);
     };
-    return builder::build_top_down(input_, options_.seed, splitter, laps_, log);
+    return builder::build_top_down(input_, options_, splitter, laps_, log);
   }
 
  private:

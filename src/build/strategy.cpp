@@ -1,6 +1,7 @@
 #include "build/strategy.h"
 
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 #include "raygrain/error.h"
@@ -66,6 +67,9 @@ void ActiveStrategy::set_total(const NodeContext& root) {
 
 void ActiveStrategy::measure(std::span<const Bounds> boxes, std::span<float> out, const NodeContext& node) const {
   strategy_.measure(boxes, out);
+  bool good = true;
+  for (const float value : out) good &= value >= 0 && value <= std::numeric_limits<float>::max();
+  if (good) return;
   for (const float value : out)
     if (!(value >= 0 && std::isfinite(value)))
       blame(node, "the measure returned " + text(value), "a measure must be finite and not negative");

@@ -4,22 +4,13 @@
 #include <numeric>
 
 #include "base/random.h"
+#include "build/monitor.h"
 
 namespace raygrain::builder {
 
 namespace {
 
-NodeContext root_context(const Input& input, uint64_t seed) {
-  NodeContext root;
-  for (const Bounds& box : input.bounds) root.bounds.extend(box);
-  root.count = static_cast<uint32_t>(input.bounds.size());
-  root.seed = Random(seed).next();
-  return root;
-}
-
-NodeContext child_context(const NodeContext& parent, const Bounds& bounds, uint32_t count, int axis, uint64_t side) {
-  return {bounds, count, parent.level + 1, axis, Random(parent.seed + side).next()};
-}
+constexpr size_t kProgressStep = 4096;  // primitives
 
 /// Left primitives first; both sides keep their order, so the result depends on nothing else.
 void partition(const Input& input, std::span<uint32_t> prims, const Choice& choice, const NodeContext& node,
@@ -39,7 +30,20 @@ void partition(const Input& input, std::span<uint32_t> prims, const Choice& choi
 
 }  // namespace
 
-Bvh build_top_down(const Input& input, uint64_t seed, const Splitter& splitter, Laps& laps, BuildLog* log) {
+NodeContext root_context(const Bounds& bounds, uint32_t count, uint64_t seed) {
+  NodeContext root;
+  root.bounds = bounds;
+  root.count = count;
+  root.seed = Random(seed).next();
+  return root;
+}
+
+NodeContext child_context(const NodeContext& parent, const Bounds& bounds, uint32_t count, int axis, uint64_t side) {
+  return {bounds, count, parent.level + 1, axis, Random(parent.seed + side).next()};
+}
+
+Bvh build_top_down(const Input& input, const BuildOptions& options, const Splitter& splitter, Laps& laps,
+                   BuildLog* log) {
   Bvh bvh;
   if (input.bounds.empty()) return bvh;
   bvh.prims.resize(input.bounds.size());
@@ -47,7 +51,11 @@ Bvh build_top_down(const Input& input, uint64_t seed, const Splitter& splitter, 
   bvh.nodes.reserve(2 * input.bounds.size() - 1);
   bvh.nodes.resize(1);
 
-  OpenNode root{root_context(input, seed)};
+  Bounds all;
+  for (const Bounds& box : input.bounds) all.extend(box);
+  OpenNode root{root_context(all, static_cast<uint32_t>(input.bounds.size()), options.seed)};
+  Monitor monitor(options.progress, input.bounds.size());
+  size_t finished = 0, told = 0;
   splitter.start(root.context);
   root.measure = splitter.judge(0).measure(root.context.bounds, root.context);
   std::vector<OpenNode> open{root};
@@ -60,6 +68,11 @@ Bvh build_top_down(const Input& input, uint64_t seed, const Splitter& splitter, 
     open.pop_back();
     const NodeContext& context = node.context;
     bvh.nodes[node.index] = {context.bounds, node.first, context.count};
+    finished = node.first;  // depth first: all before this node are in leaves
+    if (finished >= told + kProgressStep || context.level == 0) {
+      monitor.finish(finished - told);
+      told = finished;
+    }
 
     // Leaf by rule?
     const bool is_leaf = context.count < 2 || context.level >= kMaxTreeLevels ||
@@ -103,7 +116,9 @@ Bvh build_top_down(const Input& input, uint64_t seed, const Splitter& splitter, 
     open.push_back(left);
     laps.lap(&BuildTimes::nodes);
   }
+  if (log) log->peak_bytes = memory_bytes(bvh) + scratch.capacity() * sizeof(uint32_t);
   bvh.nodes.shrink_to_fit();
+  monitor.finish(input.bounds.size() - told);
   if (log) log->nodes = std::move(notes);
   return bvh;
 }

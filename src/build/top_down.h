@@ -31,7 +31,12 @@ struct Splitter {
 
 /// Depth first, left before right; children are allocated in pairs. The stack holds at most one node per level and one
 /// more. Leaves: what the judge's stop rule says, single primitives, and the level kMaxTreeLevels.
-Bvh build_top_down(const Input& input, uint64_t seed, const Splitter& splitter, Laps& laps, BuildLog* log);
+Bvh build_top_down(const Input& input, const BuildOptions& options, const Splitter& splitter, Laps& laps,
+                   BuildLog* log);
+
+/// The root of a tree, and the children of a node (side 1 or 2).
+NodeContext root_context(const Bounds& bounds, uint32_t count, uint64_t seed);
+NodeContext child_context(const NodeContext& parent, const Bounds& bounds, uint32_t count, int axis, uint64_t side);
 
 /// The box of the primitives' keys along x, y and z under the strategy's partition rule.
 Bounds key_box(const Input& input, std::span<const uint32_t> prims, const ActiveStrategy& strategy,

@@ -91,7 +91,23 @@ void check_supply(const Recipe& recipe, const Registry& registry, const Heuristi
 Registry default_registry() {
   return {default_measures(),
           default_orientations(),
-          {{"paper", "Algorithm 1 of the paper", build_paper}, {"binned", "binned top-down, all axes", build_binned}}};
+          {{"paper", "Algorithm 1 of the paper", build_paper},
+           {"binned", "binned top-down, all axes, parallel", build_binned},
+           {"sweep", "full sweep, all axes: the reference for quality", build_sweep},
+           {"spatial", "binned top-down with planes that cut triangles, parallel", build_spatial},
+           {"subset", "binned from a random subset: fast, parallel", build_subset}}};
+}
+
+const char* builder_name(Quality quality) {
+  return quality == Quality::kFast ? "subset" : (quality == Quality::kBalanced ? "binned" : "spatial");
+}
+
+Quality parse_quality(std::string_view text) {
+  if (text == "fast") return Quality::kFast;
+  if (text == "balanced") return Quality::kBalanced;
+  if (text == "best") return Quality::kBest;
+  throw Error(ErrorCode::kUsage, "quality", "unknown quality \"" + std::string(text.substr(0, 64)) + "\"",
+              "Known: fast, balanced, best");
 }
 
 std::string recipe_name(const Recipe& recipe) {
@@ -132,6 +148,7 @@ BuildOptions make_build_options(const Recipe& recipe, const Registry& registry, 
   options.fallback->orientation = longest_axis_orientation();
   options.parameters = recipe.parameters;
   options.merge_leaves = true;
+  options.clip = input.clip;
   if (orientation.all_axes) {
     options.parameters.split_plane_quality_threshold = 0;
     options.parameters.excellent_ratio = 0;

@@ -41,7 +41,7 @@ void save_tree_json(const Bvh& bvh, const std::string& info_json, const std::str
     }
     stream << "],\n\"prims\": [";
     for (size_t i = 0; i < bvh.prims.size(); ++i) stream << (i == 0 ? "" : ",") << bvh.prims[i];
-    stream << "]}\n";
+    stream << "]" << (bvh.split_references ? ",\n\"split_references\": true" : "") << "}\n";
   });
 }
 

@@ -9,10 +9,10 @@
 #include "raygrain/error.h"
 #include "raygrain/rays.h"
 
-#include "accel/estimate.h"
 #include "accel/scenes.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "build/estimate.h"
 
 namespace raygrain {
 namespace {

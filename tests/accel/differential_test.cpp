@@ -12,6 +12,7 @@
 
 #include "raygrain/accelerator.h"
 #include "raygrain/rays.h"
+#include "raygrain/refine.h"
 
 #include "accel/area_families.h"
 #include "base/parallel.h"
@@ -66,6 +67,10 @@ std::vector<Combination> all_combinations(const TriangleMesh& mesh, const std::v
     if (!is_valid_for(recipe, registry, nullptr)) continue;
     globals.push_back(std::make_shared<const Bvh>(build_global_tree(mesh, recipe, registry)));
     combinations.push_back({"global " + recipe_name(recipe), Accelerator(shared_mesh, {}, globals.back())});
+    Bvh reinserted = *globals.back();
+    reinsert(reinserted);
+    combinations.push_back({"reinserted " + recipe_name(recipe),
+                            Accelerator(shared_mesh, {}, std::make_shared<const Bvh>(std::move(reinserted)))});
   }
   for (const Recipe& recipe : all_recipes(registry)) {
     std::vector<LocalTree> locals;

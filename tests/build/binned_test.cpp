@@ -14,14 +14,14 @@ double slow_least_cost(const Prims& prims, const std::vector<uint32_t>& ids, uin
   Bounds centroids;
   for (const uint32_t id : ids) centroids.extend(prims.centroids[id]);
   double least = std::numeric_limits<double>::infinity();
+  const uint32_t slices = std::min(bins, 4 + static_cast<uint32_t>(ids.size()) / 2);
   for (int axis = 0; axis < 3; ++axis)
-    for (uint32_t i = 1; i < bins; ++i) {
-      const double lo = static_cast<double>(centroids.lo[axis]), hi = static_cast<double>(centroids.hi[axis]);
-      const auto plane = static_cast<float>(lo + (hi - lo) * (static_cast<double>(i) / bins));
+    for (uint32_t i = 1; i < slices; ++i) {
+      const float lo = centroids.lo[axis], scale = static_cast<float>(slices) / (centroids.hi[axis] - lo);
       Bounds left, right;
       double left_count = 0, right_count = 0;
       for (const uint32_t id : ids) {
-        const bool is_left = prims.centroids[id][axis] < plane;
+        const bool is_left = (prims.centroids[id][axis] - lo) * scale < static_cast<float>(i);
         (is_left ? left : right).extend(prims.bounds[id]);
         (is_left ? left_count : right_count) += 1;
       }

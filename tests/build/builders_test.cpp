@@ -24,6 +24,12 @@ std::vector<NamedBuild> builds() {
     change(options);
     all.push_back({"paper " + name, build_paper, options});
     all.push_back({"binned " + name, build_binned, options});
+    all.push_back({"subset " + name, build_subset, options});
+    all.push_back({"sweep " + name, build_sweep, options});
+    // Cut as the boxes that they are.
+    options.clip = [](uint32_t, const Bounds& box) { return box; };
+    options.spatial = {0, 1};
+    all.push_back({"spatial " + name, build_spatial, options});
   };
   add("default", [](BuildOptions& o) { o = {}; });
   add("preset", [](BuildOptions&) {});

@@ -180,13 +180,20 @@ TEST(Trees, OfAllRecipesAreValid) {
             const Recipe recipe{measure.name, orientation.name, builder.name, {}};
             SCOPED_TRACE(testing::Message() << mesh.name << " " << recipe_name(recipe) << " " << area.name);
             BuildLog log;
-            const Bvh bvh = build_tree(recipe, kRegistry, {&area, rays}, bounds, centroids, &log);
+            const auto clip = [&](uint32_t i, const Bounds& box) { return clip_triangle_bounds(mesh.mesh, i, box); };
+            const Bvh bvh = build_tree(recipe, kRegistry, {&area, rays, clip}, bounds, centroids, &log);
             EXPECT_EQ(find_defect(bvh, bounds), std::nullopt);
             EXPECT_EQ(log.nodes.size(), bvh.nodes.size());
             if (builder.name != "paper" || orientation.name != "ALL") continue;
             for (size_t i = 0; i < bvh.nodes.size(); ++i) EXPECT_FALSE(log.nodes[i].forced) << "node " << i;
           }
   }
+}
+
+TEST(Qualities, NameBuilders) {
+  for (const auto& [text, builder] : {std::pair{"fast", "subset"}, {"balanced", "binned"}, {"best", "spatial"}})
+    EXPECT_EQ(builder_name(parse_quality(text)), std::string(builder));
+  EXPECT_EQ(error_of([] { parse_quality("Best"); }).code, ErrorCode::kUsage);
 }
 
 TEST(Registry, OwnRowsWorkByName) {

@@ -1,4 +1,4 @@
-#include "accel/estimate.h"
+#include "build/estimate.h"
 
 #include <gtest/gtest.h>
 

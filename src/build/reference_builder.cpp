@@ -1,0 +1,232 @@
+#include "build/reference_builder.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "build/reference_scratch.h"
+#include "build/top_down.h"
+
+namespace raygrain::builder {
+
+namespace {
+
+constexpr size_t kSubtree = 16384;  // nodes of up to this many references are built by one thread
+
+/// Charges the subtrees' parts to the wall-clock time that they took together.
+void add_scaled(BuildTimes& times, const std::vector<Piece>& pieces, double seconds) {
+  BuildTimes sum;
+  for (const Piece& piece : pieces) {
+    sum.total += piece.times.total;
+    for (const auto part : {&BuildTimes::orientations, &BuildTimes::candidates, &BuildTimes::partition,
+                            &BuildTimes::stop, &BuildTimes::nodes})
+      sum.*part += piece.times.*part;
+  }
+  if (!(sum.total > 0)) return;
+  for (const auto part : {&BuildTimes::orientations, &BuildTimes::candidates, &BuildTimes::partition, &BuildTimes::stop,
+                          &BuildTimes::nodes})
+    times.*part += sum.*part * (seconds / sum.total);
+}
+
+}  // namespace
+
+ReferenceBuilder::ReferenceBuilder(const Input& input, const BuildOptions& options, bool spatial)
+    : input_(input),
+      options_(options),
+      spatial_(spatial),
+      strategy_(options.strategy, options.parameters, options.costs),
+      monitor_(options.progress, input.bounds.size()) {}
+
+bool ReferenceBuilder::serves(const Input& input, const BuildStrategy& strategy) {
+  if (strategy.cost || strategy.planes || strategy.partition || strategy.stop) return false;
+  Bounds all;
+  for (const Vec3 key : input.centroids) all.extend(key);
+  for (const Bounds& box : input.bounds) all.extend(box);
+  return input.bounds.empty() || is_finite(extent(all));
+}
+
+void ReferenceBuilder::fill(std::vector<Reference>& references, PackedBox& box, PackedBox& keys) const {
+  const size_t count = input_.bounds.size();
+  std::vector<std::array<PackedBox, 2>> boxes((count + kChunk - 1) / kChunk);
+  parallel_for(count, kChunk, options_.threads, [&](size_t begin, size_t end) {
+    PackedBox all, all_keys;
+    for (size_t i = begin; i < end; ++i) {
+      references[i] = Reference::of(input_.bounds[i], input_.centroids[i], static_cast<uint32_t>(i));
+      all.extend(references[i].box);
+      all_keys.extend(PackedBox::of_point(references[i].key));
+    }
+    boxes[begin / kChunk] = {all, all_keys};
+  });
+  for (const auto& [all, all_keys] : boxes) {
+    box.extend(all);
+    keys.extend(all_keys);
+  }
+}
+
+Bvh ReferenceBuilder::build(BuildLog* log) {
+  Laps laps(log ? &log->times : nullptr);
+  if (input_.bounds.empty()) return {};
+  logging_ = log != nullptr;
+  const size_t count = input_.bounds.size();
+  const auto extra =
+      static_cast<size_t>(spatial_ ? static_cast<double>(options_.spatial.budget) * static_cast<double>(count) : 0);
+  const size_t room = std::min(count + extra, size_t{1} << 31);
+  first_.resize(room);
+  second_.resize(room);
+  PackedBox box;
+  OpenRange root;
+  fill(first_, box, root.keys);
+  root.context = root_context(box.unpacked(), static_cast<uint32_t>(count), options_.seed);
+  root.room = room;
+  strategy_.set_total(root.context);
+  root_measure_ = root.measure = strategy_.measure(root.context.bounds, root.context);
+  laps.lap(&BuildTimes::nodes);
+
+  split_top(root, laps);
+  std::vector<Piece> pieces(subtrees_.size());
+  const Timer timer;
+  parallel_for(pieces.size(), 1, options_.threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) pieces[i] = build_piece(subtrees_[i]);
+  });
+  laps.skip();
+  if (log) add_scaled(log->times, pieces, timer.seconds());
+  if (log) log->peak_bytes = (first_.size() + second_.size()) * sizeof(Reference);
+  Bvh bvh = assemble(pieces, log);
+  laps.lap(&BuildTimes::nodes);
+  return bvh;
+}
+
+/// Splits nodes until each is small enough for one thread.
+void ReferenceBuilder::split_top(const OpenRange& root, Laps& laps) {
+  top_.assign(1, {});
+  std::vector<OpenRange> open{root};
+  Scratch scratch;
+  while (!open.empty()) {
+    const OpenRange node = open.back();
+    open.pop_back();
+    Children children;
+    NodeLog note;
+    const bool is_large = node.context.count > kSubtree;
+    if (!is_large || !split(node, scratch, options_.threads, children, note, laps)) {
+      top_[node.index].piece = static_cast<int64_t>(subtrees_.size());
+      subtrees_.push_back(node);
+      subtrees_.back().index = 0;
+      continue;
+    }
+    const auto first = static_cast<uint32_t>(top_.size());
+    top_[node.index].node = {node.context.bounds, first, 0};
+    top_[node.index].note = note;
+    top_.resize(top_.size() + 2);
+    children.left.index = first;
+    children.right.index = first + 1;
+    open.push_back(children.right);
+    open.push_back(children.left);
+    monitor_.finish(0);
+  }
+}
+
+/// Depth first, left before right; children are allocated in pairs.
+Piece ReferenceBuilder::build_piece(const OpenRange& root) const {
+  Piece piece;
+  Laps laps(logging_ ? &piece.times : nullptr);
+  piece.nodes.reserve(2 * std::min<size_t>(root.room, size_t{root.context.count} + root.context.count / 4));
+  piece.prims.reserve(root.room);
+  piece.nodes.resize(1);
+  piece.notes.resize(1);
+  std::vector<OpenRange> open{root};
+  Scratch scratch;
+  while (!open.empty()) {
+    const OpenRange node = open.back();
+    open.pop_back();
+    Children children;
+    NodeLog note;
+    if (!split(node, scratch, 1, children, note, laps)) {
+      piece.nodes[node.index] = {node.context.bounds, static_cast<uint32_t>(piece.prims.size()), node.context.count};
+      if (logging_) piece.notes[node.index] = note;
+      for (const Reference& reference : references_of(node)) piece.prims.push_back(reference.id());
+      if (spatial_) std::sort(piece.prims.end() - node.context.count, piece.prims.end());
+      continue;
+    }
+    const auto first = static_cast<uint32_t>(piece.nodes.size());
+    piece.nodes[node.index] = {node.context.bounds, first, 0};
+    piece.nodes.resize(piece.nodes.size() + 2);
+    if (logging_) {
+      piece.notes[node.index] = note;
+      piece.notes.resize(piece.nodes.size());
+    }
+    children.left.index = first;
+    children.right.index = first + 1;
+    open.push_back(children.right);
+    open.push_back(children.left);
+    laps.lap(&BuildTimes::nodes);
+  }
+  laps.finish();
+  monitor_.finish(root.context.count);
+  return piece;
+}
+
+Bvh ReferenceBuilder::assemble(std::vector<Piece>& pieces, BuildLog* log) const {
+  struct Place {
+    uint32_t root, first_node, first_prim;
+  };
+  std::vector<Place> places(pieces.size());
+  size_t node_count = 1, prim_count = 0;
+  for (const Piece& piece : pieces) {
+    node_count += piece.nodes.size() - 1;
+    prim_count += piece.prims.size();
+  }
+  node_count += top_.size() - 1;
+  Bvh bvh;
+  bvh.nodes.resize(node_count);
+  bvh.prims.resize(prim_count);
+  bvh.split_references = prim_count > input_.bounds.size();
+  if (log) log->nodes.resize(node_count);
+  if (log) {
+    log->peak_bytes += memory_bytes(bvh);
+    for (const Piece& piece : pieces)
+      log->peak_bytes += piece.nodes.capacity() * sizeof(Bvh::Node) + piece.prims.capacity() * sizeof(uint32_t);
+  }
+
+  // Places, in the order in which one thread alone would have made the nodes.
+  struct Visit {
+    uint32_t top, place;
+  };
+  std::vector<Visit> open{{0, 0}};
+  uint32_t next_node = 1, next_prim = 0;
+  while (!open.empty()) {
+    const auto [top, place] = open.back();
+    open.pop_back();
+    const TopNode& node = top_[top];
+    if (node.piece >= 0) {
+      const Piece& piece = pieces[static_cast<size_t>(node.piece)];
+      places[static_cast<size_t>(node.piece)] = {place, next_node, next_prim};
+      next_node += static_cast<uint32_t>(piece.nodes.size() - 1);
+      next_prim += static_cast<uint32_t>(piece.prims.size());
+      continue;
+    }
+    bvh.nodes[place] = {node.node.bounds, next_node, 0};
+    if (log) log->nodes[place] = node.note;
+    open.push_back({node.node.first + 1, next_node + 1});
+    open.push_back({node.node.first, next_node});
+    next_node += 2;
+  }
+
+  parallel_for(pieces.size(), 1, options_.threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      Piece& piece = pieces[i];
+      const Place& place = places[i];
+      for (size_t k = 0; k < piece.nodes.size(); ++k) {
+        const size_t at = k == 0 ? place.root : place.first_node + k - 1;
+        Bvh::Node node = piece.nodes[k];
+        node.first += node.is_leaf() ? place.first_prim : place.first_node - 1;
+        bvh.nodes[at] = node;
+        if (log) log->nodes[at] = piece.notes[k];
+      }
+      std::copy(piece.prims.begin(), piece.prims.end(), bvh.prims.begin() + place.first_prim);
+      piece = {};
+    }
+  });
+  return bvh;
+}
+
+}  // namespace raygrain::builder

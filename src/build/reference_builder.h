@@ -1,0 +1,96 @@
+// The parallel builder behind build_binned and build_spatial: top-down over packed references.
+//
+// Large nodes are split one after the other, each by parallel loops over chunks of its references; what is left are
+// subtrees, each built by one thread into memory of its own; at last all are copied to their places, which their sizes
+// alone decide. Chunks depend on counts only and merge in order, so no thread decides a bit of the tree.
+#pragma once
+
+#include <vector>
+
+#include "build/laps.h"
+#include "build/monitor.h"
+#include "build/slices.h"
+#include "build/space_slices.h"
+
+namespace raygrain::builder {
+
+/// A node that is not yet split. Its references stand at [begin, begin + count) of one of two buffers, and may grow in
+/// number up to `room` on their way down.
+struct OpenRange {
+  NodeContext context;
+  float measure = 0;
+  PackedBox keys;
+  size_t begin = 0, room = 0;
+  bool in_second = false;
+  uint32_t index = 0;  // in the nodes of its subtree, or of the top
+};
+
+/// A finished piece of the tree. Children of nodes and first primitives of leaves count from the piece's own start.
+struct Piece {
+  std::vector<Bvh::Node> nodes;
+  std::vector<uint32_t> prims;
+  std::vector<NodeLog> notes;
+  BuildTimes times;
+};
+
+class ReferenceBuilder {
+ public:
+  /// `spatial` asks for splits that cut primitives.
+  ReferenceBuilder(const Input& input, const BuildOptions& options, bool spatial);
+
+  /// Whether this builder can serve the options: only measure and orientation are replaced, and keys are so near to
+  /// each other that float can tell their distances.
+  static bool serves(const Input& input, const BuildStrategy& strategy);
+
+  Bvh build(BuildLog* log);
+
+ private:
+  struct Scratch;
+  struct Children {
+    OpenRange left, right;
+  };
+  /// Nodes above all subtrees.
+  struct TopNode {
+    Bvh::Node node;  // first: of the children in this list
+    NodeLog note;
+    int64_t piece = -1;
+  };
+
+  void fill(std::vector<Reference>& references, PackedBox& box, PackedBox& keys) const;
+  void split_top(const OpenRange& root, Laps& laps);
+  Piece build_piece(const OpenRange& root) const;
+  bool split(const OpenRange& node, Scratch& scratch, unsigned threads, Children& children, NodeLog& note,
+             Laps& laps) const;
+  AxisOrder admitted_axes(const NodeContext& node) const;
+  Cut find_cut(const OpenRange& node, const AxisOrder& order, Scratch& scratch, unsigned threads) const;
+  Cut find_space_cut(const OpenRange& node, const AxisOrder& order, const Cut& best, Scratch& scratch,
+                     unsigned threads) const;
+  Cut find_last_cut(const OpenRange& node, Scratch& scratch, unsigned threads) const;
+  Cut halve(const OpenRange& node) const;
+  bool is_leaf_cheaper(const OpenRange& node, const Cut& cut) const;
+  bool part_by_space(const OpenRange& node, Cut& cut, double limit, Scratch& scratch, unsigned threads,
+                     Children& children) const;
+  bool price_sides(const OpenRange& node, Cut& cut, std::span<const SpaceSides> chunks) const;
+  static bool fits(const OpenRange& node, const Cut& cut);
+  void part_by_keys(const OpenRange& node, const Cut& cut, Scratch& scratch, unsigned threads,
+                    Children& children) const;
+  Children open_children(const OpenRange& node, const Cut& cut) const;
+  std::span<Reference> buffer(bool second) const { return second ? std::span(second_) : std::span(first_); }
+  std::span<const Reference> references_of(const OpenRange& node) const {
+    return std::span<const Reference>(buffer(node.in_second)).subspan(node.begin, node.context.count);
+  }
+  Bvh assemble(std::vector<Piece>& pieces, BuildLog* log) const;
+
+  const Input& input_;
+  const BuildOptions& options_;
+  const bool spatial_;
+  ActiveStrategy strategy_;
+  mutable std::vector<Reference> first_, second_;  // split writes disjoint ranges from several threads
+  std::vector<TopNode> top_;
+  std::vector<OpenRange> subtrees_;
+  float root_measure_ = 0;
+  bool logging_ = false;
+  mutable Monitor monitor_;
+};
+
+}  // namespace raygrain::builder

@@ -1,0 +1,178 @@
+#include "build/space_slices.h"
+
+#include <cmath>
+
+namespace raygrain::builder {
+
+namespace {
+
+/// The part of a reference's primitive between two planes: within the reference's box, whatever the callback says.
+Bounds part_between(const Reference& reference, int axis, float lo, float hi, const ClipPrimitive& clip) {
+  Bounds box = reference.box.unpacked();
+  box.lo[axis] = std::max(box.lo[axis], lo);
+  box.hi[axis] = std::min(box.hi[axis], hi);
+  return intersected(box, clip(reference.id(), box));
+}
+
+Reference with_box(const Reference& reference, const Bounds& box) {
+  return Reference::of(box, center(box), reference.id());
+}
+
+}  // namespace
+
+SpaceGrid::SpaceGrid(const Bounds& box) {
+  const Vec3 length = extent(box);
+  lo = FourFloats{box.lo.x, box.lo.y, box.lo.z, 0};
+  step = FourFloats{length.x, length.y, length.z, 0} * (1.0f / kSlices);
+  for (int axis = 0; axis < 3; ++axis) {
+    const float candidate = kSlices / length[axis];
+    scale[axis] = candidate <= std::numeric_limits<float>::max() ? candidate : 0;
+  }
+}
+
+void SpaceSlices::clear() {
+  for (auto& axis : slices_) axis.fill(Slice{});
+}
+
+void SpaceSlices::add(const SpaceGrid& grid, std::span<const Reference> references) {
+  constexpr float kTop = SpaceGrid::kSlices - 1, kLess = 1 - 0x1p-20f;  // an end on a plane lies below it
+  constexpr FourFloats last{kTop, kTop, kTop, kTop};
+  for (const Reference& reference : references) {
+    FourFloats lower = reference.box.lower;
+    lower[3] = 0;
+    const FourInts first_slices = truncated(lesser((lower - grid.lo) * grid.scale, last));
+    const FourInts last_slices = truncated(lesser((-reference.box.upper - grid.lo) * grid.scale * kLess, last));
+    for (int axis = 0; axis < 3; ++axis) {
+      auto& slices = slices_[static_cast<size_t>(axis)];
+      const auto first = static_cast<uint32_t>(first_slices[axis]);
+      const auto end = std::max(first, static_cast<uint32_t>(last_slices[axis]));
+      ++slices[first].entries;
+      ++slices[end].exits;
+      PackedBox part = reference.box;
+      for (uint32_t slice = first; slice < end; ++slice) {
+        const float plane = grid.plane(axis, slice + 1);
+        part.upper[axis] = -plane;
+        slices[slice].box.extend(part);
+        part.lower[axis] = plane;
+      }
+      part.upper[axis] = reference.box.upper[axis];
+      slices[end].box.extend(part);
+    }
+  }
+}
+
+void SpaceSlices::merge(const SpaceSlices& other) {
+  for (size_t axis = 0; axis < 3; ++axis)
+    for (size_t i = 0; i < SpaceGrid::kSlices; ++i) {
+      Slice& slice = slices_[axis][i];
+      slice.box.extend(other.slices_[axis][i].box);
+      slice.entries += other.slices_[axis][i].entries;
+      slice.exits += other.slices_[axis][i].exits;
+    }
+}
+
+void SpaceSlices::sweep(const NodeContext& node, const AxisChoice& axis, const SpaceGrid& grid) {
+  const auto& slices = slices_[static_cast<size_t>(axis.axis)];
+  std::array<PackedBox, SpaceGrid::kSlices> above;  // of this slice and all after it
+  std::array<uint32_t, SpaceGrid::kSlices> exits{};
+  for (size_t i = SpaceGrid::kSlices; i-- > 0;) {
+    above[i] = slices[i].box;
+    exits[i] = slices[i].exits;
+    if (i + 1 == SpaceGrid::kSlices) continue;
+    above[i].extend(above[i + 1]);
+    exits[i] += exits[i + 1];
+  }
+  PackedBox below;
+  uint32_t entries = 0;
+  for (uint32_t i = 0; i + 1 < SpaceGrid::kSlices; ++i) {
+    below.extend(slices[i].box);
+    entries += slices[i].entries;
+    const uint32_t left = entries, right = exits[i + 1];
+    if (left == 0 || right == 0 || left >= node.count || right >= node.count) continue;
+    const Bounds left_box = below.unpacked(), right_box = above[i + 1].unpacked();
+    if (is_empty(left_box) || is_empty(right_box)) continue;
+    candidates_.push_back({axis, grid.plane(axis.axis, i + 1), left, right});
+    sides_.push_back(left_box);
+    sides_.push_back(right_box);
+  }
+}
+
+Cut SpaceSlices::best_cut(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order,
+                          const SpaceGrid& grid) {
+  candidates_.clear();
+  sides_.clear();
+  for (size_t i = 0; i < static_cast<size_t>(order.count); ++i)
+    if (grid.scale[order.choices[i].axis] > 0) sweep(node, order.choices[i], grid);
+  Cut best;
+  if (candidates_.empty()) return best;
+  measures_.resize(sides_.size());
+  strategy.measure(sides_, measures_, node);
+  for (size_t i = 0; i < candidates_.size(); ++i) {
+    const Candidate& c = candidates_[i];
+    const float left = measures_[2 * i], right = measures_[2 * i + 1];
+    const double cost = static_cast<double>(left) * c.left_count + static_cast<double>(right) * c.right_count;
+    if (!(cost < best.cost)) continue;
+    best = {Cut::Kind::kSpace, c.axis.axis,  c.axis.quality, 0,    0,     0,   c.plane, sides_[2 * i],
+            sides_[2 * i + 1], c.left_count, c.right_count,  left, right, cost};
+  }
+  return best;
+}
+
+void SpaceSides::part(const Cut& plane, std::span<const Reference> references, const ClipPrimitive& clip) {
+  left.clear();
+  right.clear();
+  torn.clear();
+  left_box = right_box = {};
+  const auto put_left = [&](const Reference& reference) {
+    left.push_back(reference);
+    left_box.extend(reference.box);
+  };
+  const auto put_right = [&](const Reference& reference) {
+    right.push_back(reference);
+    right_box.extend(reference.box);
+  };
+  for (const Reference& reference : references) {
+    if (reference.box.lo(plane.axis) >= plane.plane) {
+      put_right(reference);
+    } else if (reference.box.hi(plane.axis) <= plane.plane) {
+      put_left(reference);
+    } else {
+      const Bounds lower = part_between(reference, plane.axis, -kInf, plane.plane, clip);
+      const Bounds upper = part_between(reference, plane.axis, plane.plane, kInf, clip);
+      if (is_empty(lower) && is_empty(upper)) {
+        put_left(reference);  // a callback that denies the primitive: keep it whole
+      } else if (is_empty(upper)) {
+        put_left(with_box(reference, lower));
+      } else if (is_empty(lower)) {
+        put_right(with_box(reference, upper));
+      } else {
+        torn.push_back({reference, lower, upper});
+        left_box.extend(PackedBox::of(lower));
+        right_box.extend(PackedBox::of(upper));
+      }
+    }
+  }
+}
+
+void SpaceSides::mend(const Cut& cut, const ActiveStrategy& strategy, const NodeContext& node) {
+  const auto left_measure = static_cast<double>(cut.left_measure);
+  const auto right_measure = static_cast<double>(cut.right_measure);
+  for (const Torn& reference : torn) {
+    const Bounds whole = reference.whole.box.unpacked();
+    const std::array<Bounds, 2> grown{united(cut.left, whole), united(cut.right, whole)};
+    std::array<float, 2> measures{};
+    strategy.measure(grown, measures, node);
+    const double all_left = static_cast<double>(measures[0]) * cut.left_count + right_measure * (cut.right_count - 1);
+    const double all_right = left_measure * (cut.left_count - 1) + static_cast<double>(measures[1]) * cut.right_count;
+    if (all_left <= cut.cost && all_left <= all_right) {
+      left.push_back(reference.whole);
+    } else if (all_right <= cut.cost) {
+      right.push_back(reference.whole);
+    } else {
+      left.push_back(with_box(reference.whole, reference.lower));
+      right.push_back(with_box(reference.whole, reference.upper));
+    }
+  }
+}
+
+}  // namespace raygrain::builder
