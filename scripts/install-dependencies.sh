@@ -4,7 +4,7 @@
 set -euo pipefail
 
 packages=(g++ cmake ninja-build make git
-          libtbb-dev libboost-dev libassimp-dev libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libgtest-dev)
+          libtbb-dev libhwy-dev libboost-dev libassimp-dev libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libgtest-dev)
 if [ "${1:-build}" = full ]; then
   packages+=(clang clang-format clang-tidy gcovr)
 fi
