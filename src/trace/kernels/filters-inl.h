@@ -8,6 +8,7 @@
 #endif
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "trace/kernels/eight-inl.h"
@@ -42,15 +43,16 @@ struct BoxFilter {
     if (!(distance <= kFarthest * tree.reach)) return false;
     const float padding = 8 * kRoundoff * size, least = 0x1p-40f * length;
     for (size_t axis = 0; axis < 3; ++axis) {
-      const bool backward = direction[axis] < 0;
-      const float step = std::max(std::abs(direction[axis]), least), reciprocal = 1 / step;
-      const float inverse_of_axis = backward ? -reciprocal : reciprocal;
+      // Without branches: signs are hard to predict.
+      const uint32_t backward = std::bit_cast<uint32_t>(direction[axis]) >> 31;
+      const float reciprocal = 1 / std::max(std::abs(direction[axis]), least);
+      const float inverse_of_axis = std::copysign(reciprocal, direction[axis]);
       const float offset = -origin[axis] * inverse_of_axis, slack = padding * reciprocal;
       inverse[axis] = broadcast(inverse_of_axis);
       near_offset[axis] = broadcast(offset - slack);
       far_offset[axis] = broadcast(offset + slack);
-      near_side[axis] = (axis + (backward ? 3 : 0)) * kWidth;
-      far_side[axis] = (axis + (backward ? 0 : 3)) * kWidth;
+      near_side[axis] = (axis + 3 * backward) * kWidth;
+      far_side[axis] = (axis + 3 * (1 - backward)) * kWidth;
     }
     earliest = broadcast(std::max(ray.tmin, skip_before));
     return true;

@@ -6,7 +6,9 @@
 #define RAYGRAIN_TRACE_KERNELS_SEARCHES_INL_H
 #endif
 
+#include <algorithm>
 #include <bit>
+#include <utility>
 
 #include <hwy/cache_control.h>
 
@@ -32,17 +34,30 @@ struct Stack {
 
   HWY_INLINE void push(ChildRef child, float entry) {
     RAYGRAIN_CHECK_LT(size, kWideStackSize);
-    entries[size++] = {child, entry};
-  }
-  /// Farther ones below, down to `base`.
-  HWY_INLINE void push_sorted(size_t base, ChildRef child, float entry) {
-    RAYGRAIN_CHECK_LT(size, kWideStackSize);
-    size_t at = size++;
-    for (; at > base && entries[at - 1].entry < entry; --at) entries[at] = entries[at - 1];
-    entries[at] = {child, entry};
+    entries[size].child = child;
+    entries[size].entry = entry;
+    ++size;
   }
 };
 
+HWY_INLINE size_t take_lowest(uint32_t& bits) {
+  const auto lane = static_cast<size_t>(std::countr_zero(bits));
+  bits &= bits - 1;
+  return lane;
+}
+
+/// A child that the ray meets, in the order of its entry: the entry's bits above the child's number. Entries below zero
+/// come in the wrong order, which costs time at most.
+using Key = uint64_t;
+
+HWY_INLINE Key key_of(const float* entry, size_t lane) {
+  return static_cast<Key>(std::bit_cast<uint32_t>(entry[lane])) << 32 | lane;
+}
+HWY_INLINE void sort(Key& a, Key& b) {
+  const Key least = std::min(a, b);
+  b = std::max(a, b);
+  a = least;
+}
 HWY_INLINE void fetch(const WideTree& tree, ChildRef child) {
   const std::byte* lines = tree.memory.data() + (child >> 20);
   hwy::Prefetch(lines);
@@ -51,16 +66,57 @@ HWY_INLINE void fetch(const WideTree& tree, ChildRef child) {
   hwy::Prefetch(lines + 3 * kCacheLine);
 }
 
+HWY_INLINE void push(Stack& stack, const WideTree& tree, const WideNode& node, Key key) {
+  const ChildRef child = node.child[key & (kWidth - 1)];
+  fetch(tree, child);
+  stack.push(child, std::bit_cast<float>(static_cast<uint32_t>(key >> 32)));
+}
+
 HWY_INLINE bool confirm(const WideLeaf& leaf, size_t lane, const Ray& ray, Hit& hit) {
   if (!intersect_triangle(ray, leaf.vertex(0, lane), leaf.vertex(1, lane), leaf.vertex(2, lane), hit)) return false;
   hit.triangle = leaf.id[lane];
   return true;
 }
 
-HWY_INLINE size_t take_lowest(uint32_t& bits) {
-  const auto lane = static_cast<size_t>(std::countr_zero(bits));
-  bits &= bits - 1;
-  return lane;
+/// The nearest of the children in `bits`; the others go on the stack, far ones below.
+HWY_INLINE ChildRef nearest_child(const WideTree& tree, const WideNode& node, const float* entry, uint32_t bits,
+                                  Stack& stack) {
+  size_t lane = take_lowest(bits);
+  if (bits == 0) return node.child[lane];
+  Key a = key_of(entry, lane), b = key_of(entry, take_lowest(bits));
+  sort(a, b);
+  if (bits == 0) {
+    push(stack, tree, node, b);
+    return node.child[a & (kWidth - 1)];
+  }
+  Key c = key_of(entry, take_lowest(bits));
+  sort(b, c);
+  sort(a, b);
+  if (bits == 0) {
+    push(stack, tree, node, c);
+    push(stack, tree, node, b);
+    return node.child[a & (kWidth - 1)];
+  }
+  Key d = key_of(entry, take_lowest(bits));
+  sort(c, d);
+  sort(b, c);
+  sort(a, b);
+  const size_t base = stack.size;
+  while (bits != 0) {  // five and more: the farthest so far goes into the sorted ones on the stack
+    push(stack, tree, node, d);
+    for (size_t i = stack.size - 1; i > base && stack.entries[i - 1].entry < stack.entries[i].entry; --i) {
+      std::swap(stack.entries[i - 1].child, stack.entries[i].child);
+      std::swap(stack.entries[i - 1].entry, stack.entries[i].entry);
+    }
+    d = key_of(entry, take_lowest(bits));
+    sort(c, d);
+    sort(b, c);
+    sort(a, b);
+  }
+  push(stack, tree, node, d);
+  push(stack, tree, node, c);
+  push(stack, tree, node, b);
+  return node.child[a & (kWidth - 1)];
 }
 
 template <bool kCounting>
@@ -137,22 +193,7 @@ Hit nearest(const WideTree& tree, const Ray& ray, const Hit& known, float skip_b
       alignas(32) float entry[kWidth];
       uint32_t bits = boxes(node, bound, entry);
       if (bits != 0) {
-        size_t lane = take_lowest(bits);
-        ChildRef child = node.child[lane];
-        if (bits == 0) {
-          current = child;
-          continue;
-        }
-        fetch(tree, child);
-        const size_t base = stack.size;
-        stack.push(child, entry[lane]);
-        do {
-          lane = take_lowest(bits);
-          child = node.child[lane];
-          fetch(tree, child);
-          stack.push_sorted(base, child, entry[lane]);
-        } while (bits != 0);
-        current = stack.entries[--stack.size].child;
+        current = nearest_child(tree, node, entry, bits, stack);
         continue;
       }
     } else {
