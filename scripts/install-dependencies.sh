@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Installs raygrain's Debian packages: `build` (library, program, tests; the default) or `full` (Clang, coverage, format too).
+# Installs raygrain's Debian packages: `build` (library, program, tests; the default) or `full` (Clang, coverage, format too),
+# or `bench` (Embree too).
 # Works as root and with sudo; does nothing when everything is there.
 set -euo pipefail
 
@@ -7,6 +8,10 @@ packages=(g++ cmake ninja-build make git
           libtbb-dev libhwy-dev libboost-dev libassimp-dev libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libgtest-dev)
 if [ "${1:-build}" = full ]; then
   packages+=(clang clang-format clang-tidy gcovr)
+fi
+
+if [ "${1:-build}" = bench ]; then
+  packages+=(libembree-dev)
 fi
 
 missing=()

@@ -26,3 +26,4 @@
 #include "raygrain/trace.h"
 #include "raygrain/triangle.h"
 #include "raygrain/vec.h"
+#include "raygrain/wide.h"

@@ -46,7 +46,7 @@ class RelativeSlabs {
   double origin_[3], slack_[3], direction_[3];
 };
 
-/// Calls leaf(block, count) for every leaf whose box the ray may meet within `range`, until it returns false.
+/// Calls leaf(block) for every leaf whose box the ray may meet within `range`, until it returns false.
 template <class Leaf>
 void walk_wide(const WideTree& tree, const Ray& ray, const Range& range, TraceCounters& counters, const Leaf& leaf) {
   const RelativeSlabs slabs(tree, ray);
@@ -58,7 +58,7 @@ void walk_wide(const WideTree& tree, const Ray& ray, const Range& range, TraceCo
     if (triangles_of(current) != 0) {
       ++counters.leaf_hits;
       counters.leaf_triangles += triangles_of(current);
-      if (!leaf(tree.leaf(current), triangles_of(current))) return;
+      if (!leaf(tree.leaf(current))) return;
       continue;
     }
     ++counters.inner_hits;
@@ -77,7 +77,7 @@ void walk_wide(const WideTree& tree, const Ray& ray, const Range& range, TraceCo
 bool intersect_lane(const WideLeaf& leaf, size_t lane, const Ray& ray, Hit& hit, TraceCounters& counters) {
   ++counters.triangle_tests;
   if (!intersect_triangle(ray, leaf.vertex(0, lane), leaf.vertex(1, lane), leaf.vertex(2, lane), hit)) return false;
-  hit.triangle = leaf.id[lane];
+  hit.triangle = leaf.id(lane);
   return true;
 }
 
@@ -96,8 +96,8 @@ Hit nearest_carefully(const WideTree& tree, const Ray& ray, Hit known, const Sea
     if (options.prune) range.latest = std::min(range.latest, Range::above(t));
   };
   end_at(known.t);
-  walk_wide(tree, ray, range, count, [&](const WideLeaf& leaf, uint32_t triangles) {
-    for (size_t lane = 0; lane < triangles; ++lane) {
+  walk_wide(tree, ray, range, count, [&](const WideLeaf& leaf) {
+    for (size_t lane = 0; lane < leaf.count; ++lane) {
       Hit hit;
       if (!intersect_lane(leaf, lane, ray, hit, count) || !is_nearer(hit, known)) continue;
       known = hit;
@@ -112,8 +112,8 @@ bool any_carefully(const WideTree& tree, const Ray& ray, const SearchOptions& op
   TraceCounters unwanted;
   TraceCounters& count = counters != nullptr ? *counters : unwanted;
   bool found = false;
-  walk_wide(tree, ray, range_of(ray, options), count, [&](const WideLeaf& leaf, uint32_t triangles) {
-    for (size_t lane = 0; lane < triangles; ++lane) {
+  walk_wide(tree, ray, range_of(ray, options), count, [&](const WideLeaf& leaf) {
+    for (size_t lane = 0; lane < leaf.count; ++lane) {
       Hit hit;
       if (!intersect_lane(leaf, lane, ray, hit, count)) continue;
       found = true;

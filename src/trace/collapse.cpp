@@ -2,6 +2,7 @@
 // triangles may take; then a plan is made top-down from the choices that gave these costs; then it is written down.
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -55,7 +56,8 @@ class Collapse {
     for (size_t i = binary_.size(); i-- > 0;) price(i);
     place_center();
     plan();
-    wide_.memory = LineMemory(bytes_);
+    leaf_bytes_ += kLeafSlack;
+    wide_.memory = LineMemory(wide_.nodes * sizeof(WideNode) + leaf_bytes_);
     for (size_t i = items_.size(); i-- > 0;) items_[i].is_leaf() ? write_leaf(items_[i]) : write_node(items_[i]);
     return std::move(wide_);
   }
@@ -160,7 +162,6 @@ class Collapse {
 
   void plan() {
     items_.push_back({.root = 0});
-    bytes_ = sizeof(WideNode);
     std::vector<uint32_t> pending{0}, roots;
     while (!pending.empty()) {  // depth first, so that subtrees stay together
       const uint32_t index = pending.back();
@@ -175,7 +176,8 @@ class Collapse {
       std::ranges::stable_sort(roots, std::greater<>(), [&](uint32_t i) { return measures_[i]; });
       plan_children(index, roots, pending);
     }
-    if (bytes_ > uint64_t{1} << 43) throw Error(ErrorCode::kLimit, "WideBvh", "the tree takes more than 2^43 bytes");
+    if (node_bytes_ + leaf_bytes_ > uint64_t{1} << 43)
+      throw Error(ErrorCode::kLimit, "WideBvh", "the tree takes more than 2^43 bytes");
   }
 
   void plan_children(uint32_t parent, const std::vector<uint32_t>& roots, std::vector<uint32_t>& pending) {
@@ -184,17 +186,18 @@ class Collapse {
     items_[parent].children = static_cast<uint32_t>(roots.size());
     ++wide_.nodes;
     for (const uint32_t root : roots) items_.push_back({.root = root});
-    // Brothers side by side: nodes, then leaves.
-    bytes_ = (bytes_ + alignof(WideNode) - 1) / alignof(WideNode) * alignof(WideNode);
-    for (const bool leaves : {false, true})
-      for (size_t i = roots.size(); i-- > 0;) {
-        const auto index = static_cast<uint32_t>(first + i);
-        if (is_wide_leaf(roots[i]) != leaves) continue;
-        items_[index].offset = bytes_;
-        bytes_ += leaves ? sizeof(WideLeaf) : sizeof(WideNode);
-        wide_.leaves += leaves;
-        if (!leaves) pending.push_back(index);
+    for (size_t i = roots.size(); i-- > 0;) {
+      const auto index = static_cast<uint32_t>(first + i);
+      if (is_wide_leaf(roots[i])) {
+        ++wide_.leaves;
+        items_[index].offset = leaf_bytes_;  // from the first leaf
+        leaf_bytes_ += binary_[roots[i]].count * kTriangleBytes;
+      } else {
+        items_[index].offset = node_bytes_;
+        node_bytes_ += sizeof(WideNode);
+        pending.push_back(index);
       }
+    }
   }
 
   void gather(uint32_t i, std::vector<uint32_t>& ids) const {
@@ -210,17 +213,19 @@ class Collapse {
   void write_leaf(Item& item) {
     ids_.clear();
     gather(item.root, ids_);
-    auto* leaf = new (wide_.memory.data() + item.offset) WideLeaf{};
+    const size_t count = ids_.size(), offset = wide_.nodes * sizeof(WideNode) + item.offset;
+    auto* out = new (wide_.memory.data() + offset) float[10 * count];
     float size = 0;
-    for (size_t lane = 0; lane < ids_.size(); ++lane) {
-      leaf->id[lane] = ids_[lane];
+    for (size_t lane = 0; lane < count; ++lane) {
       const Bounds box = triangle_bounds(mesh_, ids_[lane]);
       for (int axis = 0; axis < 3; ++axis) {
         size = std::max(size, difference_above(box.hi[axis], box.lo[axis]));
-        for (int c = 0; c < 3; ++c) leaf->corner[c][axis][lane] = mesh_.vertex(ids_[lane], c)[axis];
+        for (int c = 0; c < 3; ++c)
+          out[static_cast<size_t>(3 * c + axis) * count + lane] = mesh_.vertex(ids_[lane], c)[axis];
       }
+      out[9 * count + lane] = std::bit_cast<float>(ids_[lane]);
     }
-    item.ref = leaf_ref(item.offset, static_cast<uint32_t>(ids_.size()), size);
+    item.ref = leaf_ref(offset, static_cast<uint32_t>(count), size);
   }
 
   void write_node(Item& item) {
@@ -248,7 +253,7 @@ class Collapse {
   std::vector<Costs> costs_;
   std::vector<Item> items_;  // children after their parents
   std::vector<uint32_t> ids_;
-  uint64_t bytes_ = 0;
+  uint64_t node_bytes_ = sizeof(WideNode), leaf_bytes_ = 0;
   WideTree wide_;
 };
 

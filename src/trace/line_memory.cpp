@@ -1,4 +1,5 @@
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 #ifdef __linux__
@@ -19,6 +20,7 @@ LineMemory::LineMemory(size_t bytes) : size_(bytes) {
   const size_t rounded = (bytes + alignment - 1) / alignment * alignment;
   bytes_.reset(static_cast<std::byte*>(std::aligned_alloc(alignment, rounded)));
   if (!bytes_) throw std::bad_alloc();
+  if (bytes >= kCacheLine) std::memset(bytes_.get() + bytes - kCacheLine, 0, kCacheLine);
 #ifdef __linux__
   if (alignment == kHugePage) madvise(bytes_.get(), rounded, MADV_HUGEPAGE);  // a wish: without it all is only slower
 #endif

@@ -1,4 +1,4 @@
-// The memory of a wide tree: nodes of eight boxes and leaves of up to eight triangles in one block of cache lines.
+// The memory of a wide tree: nodes of eight boxes, then leaves of up to eight triangles, in one block.
 #pragma once
 
 #include <bit>
@@ -43,14 +43,20 @@ struct alignas(256) WideNode {
 };
 static_assert(sizeof(WideNode) == 256);
 
-/// The mesh's own coordinates: [corner][axis][triangle]. Unused places hold zeros.
-struct alignas(kCacheLine) WideLeaf {
-  float corner[3][3][kWidth];
-  uint32_t id[kWidth];
+/// Up to eight triangles in the mesh's own coordinates: count floats for each corner and axis, then count ids. Kernels
+/// read eight floats wherever they are, so some bytes must follow (kLeafSlack).
+struct WideLeaf {
+  const std::byte* bytes;
+  uint32_t count;
 
-  Vec3 vertex(int c, size_t lane) const { return {corner[c][0][lane], corner[c][1][lane], corner[c][2][lane]}; }
+  const float* corner(size_t c, size_t axis) const {
+    return reinterpret_cast<const float*>(bytes) + (3 * c + axis) * count;
+  }
+  Vec3 vertex(size_t c, size_t lane) const { return {corner(c, 0)[lane], corner(c, 1)[lane], corner(c, 2)[lane]}; }
+  uint32_t id(size_t lane) const { return std::bit_cast<uint32_t>(corner(3, 0)[lane]); }
 };
-static_assert(sizeof(WideLeaf) == 320);
+inline constexpr size_t kTriangleBytes = 10 * sizeof(float);
+inline constexpr size_t kLeafSlack = 64;
 
 /// Whole cache lines, on huge pages where the system has them.
 class LineMemory {
@@ -82,7 +88,7 @@ struct WideTree {
 
   bool is_empty() const { return nodes == 0; }
   const WideNode& node(ChildRef ref) const { return *reinterpret_cast<const WideNode*>(memory.data() + (ref >> 20)); }
-  const WideLeaf& leaf(ChildRef ref) const { return *reinterpret_cast<const WideLeaf*>(memory.data() + (ref >> 20)); }
+  WideLeaf leaf(ChildRef ref) const { return {memory.data() + (ref >> 20), triangles_of(ref)}; }
 };
 
 /// The wide tree of least expected cost that has the binary tree's boxes, after Ylitie et al., "Efficient incoherent

@@ -8,6 +8,8 @@
 
 #include <hwy/highway.h>
 
+#include "trace/wide_tree.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace raygrain::HWY_NAMESPACE {
 namespace {
@@ -29,6 +31,11 @@ HWY_INLINE Eight broadcast(float x) {
 HWY_INLINE Eight load(const float* from) {
   Eight r;
   for (size_t i = 0; i < kParts; ++i) r.part[i] = hn::Load(Tag(), from + i * kLanes);
+  return r;
+}
+HWY_INLINE Eight load_unaligned(const float* from) {
+  Eight r;
+  for (size_t i = 0; i < kParts; ++i) r.part[i] = hn::LoadU(Tag(), from + i * kLanes);
   return r;
 }
 HWY_INLINE void store(const Eight& a, float* to) {
@@ -98,8 +105,8 @@ struct EightVectors {
 HWY_INLINE EightVectors broadcast(Vec3 a) {
   return {broadcast(a.x), broadcast(a.y), broadcast(a.z)};
 }
-HWY_INLINE EightVectors load(const float (&from)[3][8]) {
-  return {load(from[0]), load(from[1]), load(from[2])};
+HWY_INLINE EightVectors load_corner(const WideLeaf& leaf, size_t c) {
+  return {load_unaligned(leaf.corner(c, 0)), load_unaligned(leaf.corner(c, 1)), load_unaligned(leaf.corner(c, 2))};
 }
 HWY_INLINE EightVectors operator-(const EightVectors& a, const EightVectors& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};

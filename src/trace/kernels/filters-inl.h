@@ -99,10 +99,10 @@ struct TriangleFilter {
 
   /// Returns found.possible; where it is 0, `found` is not set.
   HWY_INLINE uint32_t operator()(const WideLeaf& leaf, ChildRef ref, float bound, Candidates& found) const {
-    constexpr float kFloor = 0x1p-80f, kTiny = 0x1p-100f;  // cover what underflows
+    constexpr float kFloor = 0x1p-56f, kTiny = 0x1p-100f;  // cover what underflows
     const float size = size_of(ref);
-    const EightVectors a = load(leaf.corner[0]);
-    const EightVectors to_a = a - origin, ab = load(leaf.corner[1]) - a, ac = load(leaf.corner[2]) - a;
+    const EightVectors a = load_corner(leaf, 0);
+    const EightVectors to_a = a - origin, ab = load_corner(leaf, 1) - a, ac = load_corner(leaf, 2) - a;
     const EightVectors moment = cross(direction, to_a), normal = cross(ab, ac);
     const Eight sum = dot(direction, normal), minus_b = dot(moment, ac), weight_c = dot(moment, ab);
     const Eight weight_a = sum + minus_b - weight_c;

@@ -74,7 +74,7 @@ HWY_INLINE void push(Stack& stack, const WideTree& tree, const WideNode& node, K
 
 HWY_INLINE bool confirm(const WideLeaf& leaf, size_t lane, const Ray& ray, Hit& hit) {
   if (!intersect_triangle(ray, leaf.vertex(0, lane), leaf.vertex(1, lane), leaf.vertex(2, lane), hit)) return false;
-  hit.triangle = leaf.id[lane];
+  hit.triangle = leaf.id(lane);
   return true;
 }
 
@@ -144,7 +144,7 @@ class Pending {
 
   HWY_INLINE void add(const WideLeaf& leaf, size_t lane, float earliest, float& bound) {
     if (size_ == kCapacity) decide(bound);
-    entries_[size_++] = {&leaf, static_cast<uint32_t>(lane), earliest};
+    entries_[size_++] = {leaf.bytes, leaf.count, static_cast<uint32_t>(lane), earliest};
   }
   /// Decides all of them; no hit beyond `bound` matters.
   void decide(float& bound) {
@@ -153,7 +153,7 @@ class Pending {
       if (next.earliest > bound) continue;
       if constexpr (kCounting) ++counters_->triangle_tests;
       Hit hit;
-      if (!confirm(*next.leaf, next.lane, ray_, hit) || !is_nearer(hit, best_)) continue;
+      if (!confirm({next.bytes, next.count}, next.lane, ray_, hit) || !is_nearer(hit, best_)) continue;
       best_ = hit;
       bound = std::min(bound, hit.t);
     }
@@ -162,8 +162,8 @@ class Pending {
 
  private:
   struct Candidate {
-    const WideLeaf* leaf;
-    uint32_t lane;
+    const std::byte* bytes;  // of the leaf
+    uint32_t count, lane;
     float earliest;  // NaN where unknown
   };
   static constexpr size_t kCapacity = 16;
@@ -197,7 +197,7 @@ Hit nearest(const WideTree& tree, const Ray& ray, const Hit& known, float skip_b
         continue;
       }
     } else {
-      const WideLeaf& leaf = tree.leaf(current);
+      const WideLeaf leaf = tree.leaf(current);
       count_leaf<kCounting>(current, counters);
       Candidates found;
       uint32_t bits = triangles(leaf, current, bound, found);
@@ -244,7 +244,7 @@ bool any(const WideTree& tree, const Ray& ray, float skip_before, TraceCounters*
         continue;
       }
     } else {
-      const WideLeaf& leaf = tree.leaf(current);
+      const WideLeaf leaf = tree.leaf(current);
       count_leaf<kCounting>(current, counters);
       Candidates found;
       uint32_t bits = triangles(leaf, current, ray.tmax, found);
