@@ -4,7 +4,8 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
+#include <numeric>
+#include <span>
 
 #include "raygrain/analyze.h"
 #include "raygrain/build.h"
@@ -33,34 +34,55 @@ struct Answers {
   explicit Answers(size_t count) : hits(count), flags(count) {}
 };
 
-using Contender = std::function<void()>;
+/// Answers the rays begin ... end - 1 of a set.
+using Contender = std::function<void(size_t begin, size_t end)>;
 
-/// Seconds of each, the least of kRounds rounds in which they take turns.
-std::vector<double> race(const std::vector<Contender>& contenders) {
-  std::vector<double> least(contenders.size(), std::numeric_limits<double>::infinity());
+/// Seconds of each. All take turns on every part of the set, kRounds times over the whole set, and the least time for
+/// each part counts: other programs disturb a short part less often than a long one, and what one part leaves in the
+/// caches is gone when its turn comes again.
+std::vector<double> race(const std::vector<Contender>& contenders, size_t rays, unsigned threads) {
+  const size_t part = size_t{4096} * (threads == 1 ? 1 : 8 * threads);
+  const size_t parts = (rays + part - 1) / part;
+  std::vector<std::vector<double>> least(contenders.size(),
+                                         std::vector<double>(parts, std::numeric_limits<double>::infinity()));
   for (int round = 0; round < kRounds; ++round)
-    for (size_t i = 0; i < contenders.size(); ++i) {
-      const Timer timer;
-      contenders[i]();
-      least[i] = std::min(least[i], timer.seconds());
-    }
-  return least;
+    for (size_t p = 0; p < parts; ++p)
+      for (size_t i = 0; i < contenders.size(); ++i) {
+        const Timer timer;
+        contenders[i](p * part, std::min(rays, (p + 1) * part));
+        least[i][p] = std::min(least[i][p], timer.seconds());
+      }
+  std::vector<double> seconds;
+  for (const std::vector<double>& times : least) seconds.push_back(std::accumulate(times.begin(), times.end(), 0.0));
+  return seconds;
 }
 
-void trace_array(const WideBvh& tree, const BenchRays& set, unsigned threads, Answers& answers) {
-  if (set.any)
-    tree.occluded(set.rays, answers.flags, threads);
+/// The part of a set and of its answers that a contender works on.
+struct Part {
+  std::span<const Ray> rays;
+  std::span<Hit> hits;
+  std::span<uint8_t> flags;
+
+  Part(const BenchRays& set, Answers& answers, size_t begin, size_t end)
+      : rays(std::span(set.rays).subspan(begin, end - begin)),
+        hits(std::span(answers.hits).subspan(begin, end - begin)),
+        flags(std::span(answers.flags).subspan(begin, end - begin)) {}
+};
+
+void trace_array(const WideBvh& tree, bool any, const Part& part, unsigned threads) {
+  if (any)
+    tree.occluded(part.rays, part.flags, threads);
   else
-    tree.intersect(set.rays, answers.hits, threads);
+    tree.intersect(part.rays, part.hits, threads);
 }
 
-void trace_singly(const WideBvh& tree, const BenchRays& set, unsigned threads, Answers& answers) {
-  parallel_for(set.rays.size(), kRaysPerTask, threads, [&](size_t begin, size_t end) {
+void trace_singly(const WideBvh& tree, bool any, const Part& part, unsigned threads) {
+  parallel_for(part.rays.size(), kRaysPerTask, threads, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
-      if (set.any)
-        answers.flags[i] = tree.occluded(set.rays[i]);
+      if (any)
+        part.flags[i] = tree.occluded(part.rays[i]);
       else
-        answers.hits[i] = tree.intersect(set.rays[i]);
+        part.hits[i] = tree.intersect(part.rays[i]);
     }
   });
 }
@@ -98,27 +120,25 @@ class EmbreeSide {
       for (const bool robust : {false, true})
         scenes_[{high, robust}] = std::make_unique<EmbreeScene>(mesh, high, robust, threads);
   }
-  void trace(const EmbreeMode& mode, const BenchRays& set, unsigned threads, Answers& answers) const {
+  void trace(const EmbreeMode& mode, bool any, const Part& part, unsigned threads) const {
     const EmbreeScene& scene = *scenes_.at({mode.high, mode.robust});
-    if (set.any)
-      scene.occluded(mode, set.rays, answers.flags, threads);
+    if (any)
+      scene.occluded(mode, part.rays, part.flags, threads);
     else
-      scene.intersect(mode, set.rays, answers.hits, threads);
+      scene.intersect(mode, part.rays, part.hits, threads);
   }
   const EmbreeScene& scene(bool high) const { return *scenes_.at({high, false}); }
 
   /// Those to race: the two fastest of any kind, and the fastest for single rays, on the beginning of the set.
   std::vector<EmbreeMode> best_modes(const BenchRays& set, unsigned threads) const {
-    BenchRays part{set.name,
-                   set.any,
-                   {set.rays.begin(), set.rays.begin() + std::min<std::ptrdiff_t>(50000, std::ssize(set.rays))}};
-    Answers answers(part.rays.size());
+    const size_t count = std::min<size_t>(50000, set.rays.size());
+    Answers answers(set.rays.size());
     std::vector<std::pair<double, EmbreeMode>> ranking;
     for (const EmbreeMode& mode : embree_modes()) {
       double least = std::numeric_limits<double>::infinity();
       for (int round = 0; round < 2; ++round) {
         const Timer timer;
-        trace(mode, part, threads, answers);
+        trace(mode, set.any, Part(set, answers, 0, count), threads);
         least = std::min(least, timer.seconds());
       }
       ranking.emplace_back(least, mode);
@@ -179,8 +199,9 @@ class GeneralSuite {
   void measure(const WideBvh& tree, const BenchRays& set, unsigned threads) {
     if (set.rays.empty()) return;
     Answers array(set.rays.size()), singles(set.rays.size());
-    std::vector<Contender> contenders{[&] { trace_array(tree, set, threads, array); },
-                                      [&] { trace_singly(tree, set, threads, singles); }};
+    std::vector<Contender> contenders{
+        [&](size_t begin, size_t end) { trace_array(tree, set.any, Part(set, array, begin, end), threads); },
+        [&](size_t begin, size_t end) { trace_singly(tree, set.any, Part(set, singles, begin, end), threads); }};
     Row row;
     row.suite = "general";
     row.scene = scene_.name;
@@ -192,9 +213,11 @@ class GeneralSuite {
     const std::vector<EmbreeMode> modes = embree_->best_modes(set, threads);
     std::vector<Answers> theirs(modes.size(), Answers(set.rays.size()));
     for (size_t i = 0; i < modes.size(); ++i)
-      contenders.push_back([&, i] { embree_->trace(modes[i], set, threads, theirs[i]); });
+      contenders.push_back([&, i](size_t begin, size_t end) {
+        embree_->trace(modes[i], set.any, Part(set, theirs[i], begin, end), threads);
+      });
 #endif
-    const std::vector<double> seconds = race(contenders);
+    const std::vector<double> seconds = race(contenders, set.rays.size(), threads);
     const auto mrays = [&](double s) { return static_cast<double>(set.rays.size()) / s * 1e-6; };
 #ifdef RAYGRAIN_BENCH_EMBREE
     for (size_t i = 0; i < modes.size(); ++i) {
