@@ -8,7 +8,9 @@ CTEST = ctest --output-on-failure -j $(JOBS)
 # The tests that run under the sanitizers on every change: everything below the program.
 CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_accel test_rays test_io test_analyze
 
-.PHONY: help build demo test test-full asan-test release-test tsan-test clang-test coverage format check-format tidy \
+BENCH ?= --quick
+
+.PHONY: help build demo bench bench-dependencies test test-full asan-test release-test tsan-test clang-test coverage format check-format tidy \
         dependencies full-dependencies install clean
 
 help:            ## this list
@@ -24,6 +26,14 @@ build: dependencies ## install what is needed, build library and program into bu
 	@$(call PRESET,release)
 	@cmake --build $(RELEASE) -j $(JOBS) --target raygrain raygrain_cli
 	@echo "The program is $(RELEASE)/bin/raygrain"
+
+bench-dependencies:
+	@scripts/install-dependencies.sh bench
+
+bench: bench-dependencies ## against Embree on the same rays; BENCH="--json FILE" etc. are its options, --quick by default
+	@$(call PRESET,release)
+	@cmake --build $(RELEASE) -j $(JOBS) --target raygrain_bench
+	@$(RELEASE)/bin/raygrain-bench $(BENCH)
 
 demo: build      ## build, then compare the paper's heuristics on a built-in city under a low sun
 	@scripts/demo.sh $(RELEASE)/bin/raygrain build/demo

@@ -18,3 +18,8 @@ target_link_libraries(raygrain_assimp INTERFACE assimp::assimp)
 find_path(RAYGRAIN_STB_INCLUDE_DIR stb/stb_image_write.h REQUIRED)
 add_library(raygrain_stb INTERFACE)
 target_include_directories(raygrain_stb SYSTEM INTERFACE ${RAYGRAIN_STB_INCLUDE_DIR})
+
+# Only its headers: nothing to link.
+find_path(RAYGRAIN_HIGHWAY_INCLUDE_DIR hwy/highway.h REQUIRED)
+add_library(raygrain_highway INTERFACE)
+target_include_directories(raygrain_highway SYSTEM INTERFACE ${RAYGRAIN_HIGHWAY_INCLUDE_DIR})

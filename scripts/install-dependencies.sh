@@ -1,12 +1,18 @@
 #!/usr/bin/env bash
-# Installs raygrain's Debian packages: `build` (library, program, tests; the default) or `full` (Clang, coverage, format too).
+# Installs raygrain's Debian packages: `build` (library, program, tests; the default) or `full` (Clang, coverage, format too),
+# or `bench` (Embree too).
 # Works as root and with sudo; does nothing when everything is there.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build make git
-          libtbb-dev libboost-dev libassimp-dev zlib1g-dev libcli11-dev nlohmann-json3-dev libfmt-dev libstb-dev libgtest-dev)
+          libtbb-dev libhwy-dev libboost-dev libassimp-dev zlib1g-dev libcli11-dev nlohmann-json3-dev libfmt-dev
+          libstb-dev libgtest-dev)
 if [ "${1:-build}" = full ]; then
   packages+=(clang clang-format clang-tidy gcovr)
+fi
+
+if [ "${1:-build}" = bench ]; then
+  packages+=(libembree-dev)
 fi
 
 missing=()

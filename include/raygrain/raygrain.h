@@ -27,3 +27,4 @@
 #include "raygrain/trace.h"
 #include "raygrain/triangle.h"
 #include "raygrain/vec.h"
+#include "raygrain/wide.h"

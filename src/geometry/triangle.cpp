@@ -60,12 +60,12 @@ Vec3d permanent(Vec3d a, Vec3d b) {
   return {a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x};
 }
 
-// The float nearest to the quotient; false where two floats come into question.
-bool round_quotient(Estimate numerator, Estimate denominator, float& result) {
-  const double quotient = numerator.value / denominator.value;
+// The float nearest to numerator / denominator, inverse being the computed 1 / denominator; false where two floats come
+// into question.
+bool round_quotient(const Estimate& numerator, const Estimate& denominator, double inverse, float& result) {
+  const double quotient = numerator.value * inverse;
   const double size = std::abs(quotient);
-  const double error = 2 * (numerator.error + size * denominator.error) / std::abs(denominator.value);
-  const double radius = error + 4 * kRoundoff * size;
+  const double radius = 2 * (numerator.error + size * denominator.error) * std::abs(inverse) + 8 * kRoundoff * size;
   result = static_cast<float>(quotient - radius) + 0.0f;  // no negative zeros
   return result == static_cast<float>(quotient + radius);
 }
@@ -82,11 +82,14 @@ Verdict verdict(const Estimates& e, const Ray& ray, Hit& hit) {
   const Verdict side = side_verdict(e);
   if (side != Verdict::kHit) return side;
   if (std::abs(e.sum.value) <= 4 * e.sum.error) return Verdict::kUnsure;
+  const double inverse = 1 / e.sum.value;
   Hit result = hit;
-  if (!round_quotient(e.numerator, e.sum, result.t)) return Verdict::kUnsure;
-  if (!(ray.tmin <= result.t && result.t <= ray.tmax)) return Verdict::kMiss;
-  if (!round_quotient(e.weight_b, e.sum, result.u)) return Verdict::kUnsure;
-  if (!round_quotient(e.weight_c, e.sum, result.v)) return Verdict::kUnsure;
+  // One branch for all three: they rarely fail.
+  const bool t_is_sure = round_quotient(e.numerator, e.sum, inverse, result.t);
+  const bool u_is_sure = round_quotient(e.weight_b, e.sum, inverse, result.u);
+  const bool v_is_sure = round_quotient(e.weight_c, e.sum, inverse, result.v);
+  if (t_is_sure && !(ray.tmin <= result.t && result.t <= ray.tmax)) return Verdict::kMiss;
+  if (!(t_is_sure & u_is_sure & v_is_sure)) return Verdict::kUnsure;
   hit = result;
   return Verdict::kHit;
 }
