@@ -45,12 +45,12 @@ void for_families(uint64_t seeds, const Body& body) {
     }
 }
 
-// At full scale these are 10 million searches of every kind.
+// At full scale more than 10 million closest-hit and as many any-hit searches, over arrays and one by one.
 TEST(Wide, AgreesWithTheOracleOnEveryInstructionSet) {
   size_t rays = 0, hits = 0;
-  for_families(9, [&](const TriangleMesh& mesh, uint64_t seed) {
+  for_families(3, [&](const TriangleMesh& mesh, uint64_t seed) {
     const std::vector<WideBvh> trees = on_every_isa(binned_tree(mesh), mesh);
-    const std::vector<Ray> all = test::aimed_rays(mesh, 1200, seed);
+    const std::vector<Ray> all = test::aimed_rays(mesh, test::seed_count(400), seed);
     std::vector<Hit> expected(all.size()), found(all.size());
     std::vector<uint8_t> flags(all.size());
     for (size_t i = 0; i < all.size(); ++i) {
