@@ -2,8 +2,8 @@
 
 #include "raygrain/analyze.h"
 
-#include "accel/estimate.h"
 #include "analyze/node_facts.h"
+#include "build/estimate.h"
 
 namespace raygrain {
 namespace {

@@ -3,8 +3,8 @@
 #include "raygrain/analyze.h"
 #include "raygrain/heuristics.h"
 
-#include "accel/estimate.h"
 #include "analyze/small_scenes.h"
+#include "build/estimate.h"
 
 namespace raygrain {
 namespace {
