@@ -1,21 +1,52 @@
-// Four floats as one value. A language extension that GCC and Clang share and compile for every machine: no
-// instruction set is named here, and results are those of the four scalar operations.
+// Four floats as one value: x, y, z and one to spare. Plain loops of fixed length, which compilers turn into whatever
+// the machine has; results are those of the four scalar operations.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace raygrain {
 
-using FourFloats = float __attribute__((vector_size(16)));
-using FourInts = int32_t __attribute__((vector_size(16)));
+template <class Scalar>
+struct alignas(16) FourOf {
+  Scalar lane[4] = {};
 
-inline FourFloats lesser(FourFloats a, FourFloats b) {
-  return a < b ? a : b;
+  constexpr Scalar operator[](size_t i) const { return lane[i]; }
+  constexpr Scalar& operator[](size_t i) { return lane[i]; }
+};
+
+using FourFloats = FourOf<float>;
+using FourInts = FourOf<int32_t>;
+
+template <class Operation>
+constexpr FourFloats lane_by_lane(const FourFloats& a, const FourFloats& b, Operation operation) {
+  FourFloats result;
+  for (size_t i = 0; i < 4; ++i) result.lane[i] = operation(a.lane[i], b.lane[i]);
+  return result;
+}
+
+constexpr FourFloats operator-(const FourFloats& a, const FourFloats& b) {
+  return lane_by_lane(a, b, [](float x, float y) { return x - y; });
+}
+constexpr FourFloats operator*(const FourFloats& a, const FourFloats& b) {
+  return lane_by_lane(a, b, [](float x, float y) { return x * y; });
+}
+constexpr FourFloats operator*(const FourFloats& a, float s) {
+  return a * FourFloats{s, s, s, s};
+}
+constexpr FourFloats operator-(const FourFloats& a) {
+  return a * -1.0f;
+}
+
+constexpr FourFloats lesser(const FourFloats& a, const FourFloats& b) {
+  return lane_by_lane(a, b, [](float x, float y) { return x < y ? x : y; });
 }
 
 /// Towards zero.
-inline FourInts truncated(FourFloats a) {
-  return __builtin_convertvector(a, FourInts);
+constexpr FourInts truncated(const FourFloats& a) {
+  FourInts result;
+  for (size_t i = 0; i < 4; ++i) result.lane[i] = static_cast<int32_t>(a.lane[i]);
+  return result;
 }
 
 }  // namespace raygrain
