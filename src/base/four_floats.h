@@ -11,8 +11,8 @@ template <class Scalar>
 struct alignas(16) FourOf {
   Scalar lane[4] = {};
 
-  constexpr Scalar operator[](size_t i) const { return lane[i]; }
-  constexpr Scalar& operator[](size_t i) { return lane[i]; }
+  constexpr Scalar operator[](int i) const { return lane[i]; }
+  constexpr Scalar& operator[](int i) { return lane[i]; }
 };
 
 using FourFloats = FourOf<float>;
