@@ -8,6 +8,7 @@
 #include "build/laps.h"
 #include "build/reference_builder.h"
 #include "build/strategy.h"
+#include "build/timed_build.h"
 #include "build/top_down.h"
 
 namespace raygrain {
@@ -102,16 +103,11 @@ class BinnedBuilder {
 
 Bvh build_binned(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                  BuildLog* log) {
-  validate(options);
-  const Input input{bounds, centroids};
-  builder::check_input(input);
-  if (log) *log = {};
-  builder::Laps laps(log ? &log->times : nullptr);
-  Bvh bvh = builder::ReferenceBuilder::serves(input, options.strategy)
-                ? builder::ReferenceBuilder(input, options, false).build(log)
-                : BinnedBuilder(input, options, laps).build(log);
-  laps.finish();
-  return bvh;
+  return builder::timed_build(bounds, centroids, options, log, [&](const Input& input, builder::Laps& laps) {
+    return builder::ReferenceBuilder::serves(input, options.strategy)
+               ? builder::ReferenceBuilder(input, options, false).build(log)
+               : BinnedBuilder(input, options, laps).build(log);
+  });
 }
 
 }  // namespace raygrain

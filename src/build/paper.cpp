@@ -7,6 +7,7 @@
 #include "build/bins.h"
 #include "build/laps.h"
 #include "build/strategy.h"
+#include "build/timed_build.h"
 #include "build/top_down.h"
 
 namespace raygrain {
@@ -139,14 +140,9 @@ class PaperBuilder {
 
 Bvh build_paper(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                 BuildLog* log) {
-  validate(options);
-  const Input input{bounds, centroids};
-  builder::check_input(input);
-  if (log) *log = {};
-  builder::Laps laps(log ? &log->times : nullptr);
-  Bvh bvh = PaperBuilder(input, options, laps).build(log);
-  laps.finish();
-  return bvh;
+  return builder::timed_build(bounds, centroids, options, log, [&](const Input& input, builder::Laps& laps) {
+    return PaperBuilder(input, options, laps).build(log);
+  });
 }
 
 }  // namespace raygrain

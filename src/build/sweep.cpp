@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "build/strategy.h"
+#include "build/timed_build.h"
 #include "build/top_down.h"
 
 namespace raygrain {
@@ -165,14 +166,9 @@ class SweepBuilder {
 
 Bvh build_sweep(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                 BuildLog* log) {
-  validate(options);
-  const Input input{bounds, centroids};
-  builder::check_input(input);
-  if (log) *log = {};
-  builder::Laps laps(log ? &log->times : nullptr);
-  Bvh bvh = SweepBuilder(input, options).build(laps, log);
-  laps.finish();
-  return bvh;
+  return builder::timed_build(bounds, centroids, options, log, [&](const Input& input, builder::Laps& laps) {
+    return SweepBuilder(input, options).build(laps, log);
+  });
 }
 
 }  // namespace raygrain
