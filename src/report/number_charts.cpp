@@ -1,0 +1,10 @@
+// Charts over a number: areas, triangles, thresholds, hit ratios.
+#include "report/charts.h"
+
+namespace raygrain {
+
+std::vector<Chart> number_charts(const Study&) {
+  return {};
+}
+
+}  // namespace raygrain

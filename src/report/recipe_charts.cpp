@@ -1,0 +1,212 @@
+// All recipes of a study against the baseline: what users pay, what the paper counts, and how trees are predicted and
+// built.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "report/charts.h"
+
+namespace raygrain {
+
+namespace {
+
+constexpr size_t kMostScenes = 40;  // on one panel
+
+struct Payment {
+  const char* series;
+  const char* colour;
+  RowValue value;
+};
+
+/// What is paid, the users' part first.
+std::vector<Payment> payments(const Study& study) {
+  std::vector<Payment> all{{"pruned cost", "#d9480f", column_value("pruned_cost")},
+                           {"time per ray", "#2f9e44", nanoseconds_per_ray},
+                           {"full-traversal cost (the paper's)", "#868e96", column_value("real_cost")}};
+  std::erase_if(all, [&](const Payment& payment) { return !any_measured(study.rows, payment.value); });
+  return all;
+}
+
+std::vector<std::string> recipes_of(const Study& study) {
+  std::vector<std::string> recipes = distinct(study.rows, [](const StudyRow& row) { return row.recipe; });
+  std::erase(recipes, std::string{});
+  return recipes;
+}
+
+struct Ranked {
+  std::string recipe;
+  PairedRatio ratio;
+};
+
+/// Recipes by the ratio of what users pay, the best first.
+std::vector<Ranked> ranking(const Study& study, const std::string& baseline, const RowValue& value) {
+  std::vector<Ranked> ranked;
+  for (const std::string& recipe : recipes_of(study))
+    if (const PairedRatio ratio = paired_ratio(study.rows, recipe, baseline, value); ratio.count > 0)
+      ranked.push_back({recipe, ratio});
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const Ranked& a, const Ranked& b) { return a.ratio.mean < b.ratio.mean; });
+  return ranked;
+}
+
+Chart ranking_chart(const Study& study, const std::string& baseline) {
+  Chart chart{.title = "All recipes against " + baseline};
+  ChartPanel panel{.title = "Paid per ray, as a multiple of " + baseline + "'s",
+                   .kind = ChartKind::kRanking,
+                   .y = {"geometric mean over tests of recipe / " + baseline},
+                   .reference = 1};
+  const std::vector<Payment> paid = payments(study);
+  if (paid.empty()) return chart;
+  const std::vector<Ranked> ranked = ranking(study, baseline, paid.front().value);
+  for (const Ranked& r : ranked) panel.groups.push_back(r.recipe);
+  for (const Payment& payment : paid) {
+    panel.series.push_back({payment.series, payment.colour});
+    for (const Ranked& r : ranking(study, baseline, payment.value))
+      panel.measured.push_back({.series = payment.series,
+                                .group = r.recipe,
+                                .y = r.ratio.mean,
+                                .low = r.ratio.low,
+                                .high = r.ratio.high,
+                                .count = r.ratio.count});
+  }
+  if (ranked.empty()) return chart;
+  const Ranked& best = ranked.front();
+  chart.finding = best.recipe == baseline
+                      ? fmt::format("No recipe has a lower {} than {} over {} tests.", paid.front().series, baseline,
+                                    best.ratio.count)
+                      : fmt::format("{} is best: {} times the {} of {} (geometric mean of {} tests, from {} to {}).",
+                                    best.recipe, short_number(best.ratio.mean), paid.front().series, baseline,
+                                    best.ratio.count, short_number(best.ratio.low), short_number(best.ratio.high));
+  chart.panels.push_back(std::move(panel));
+  return chart;
+}
+
+/// Each recipe's multiple of the baseline in every group of tests.
+ChartPanel ratio_dots(const Study& study, const std::string& baseline, const Payment& payment, const RowText& group,
+                      std::vector<std::string> groups) {
+  ChartPanel panel{.title = std::string(payment.series) + " as a multiple of " + baseline + "'s",
+                   .kind = ChartKind::kDots,
+                   .y = {"geometric mean over tests of recipe / " + baseline},
+                   .groups = std::move(groups),
+                   .series = coloured(recipes_of(study)),
+                   .reference = 1};
+  for (const std::string& name : panel.groups) {
+    const std::vector<StudyRow> here = filtered(study.rows, [&](const StudyRow& row) { return group(row) == name; });
+    for (const ChartSeries& series : panel.series) {
+      const PairedRatio ratio = paired_ratio(here, series.name, baseline, payment.value);
+      if (ratio.count > 0)
+        panel.measured.push_back({.series = series.name,
+                                  .group = name,
+                                  .y = ratio.mean,
+                                  .low = ratio.low,
+                                  .high = ratio.high,
+                                  .count = ratio.count});
+    }
+  }
+  return panel;
+}
+
+/// The best recipe of each group, in words.
+std::string winners(const ChartPanel& panel) {
+  std::map<std::string, size_t> wins;
+  for (const std::string& group : panel.groups) {
+    const ChartPoint* best = nullptr;
+    for (const ChartPoint& point : panel.measured)
+      if (point.group == group && (!best || point.y < best->y)) best = &point;
+    if (best) ++wins[best->series];
+  }
+  std::vector<std::pair<std::string, size_t>> sorted(wins.begin(), wins.end());
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::string text;
+  for (const auto& [recipe, count] : sorted) text += fmt::format("{}{} in {}", text.empty() ? "" : ", ", recipe, count);
+  return text;
+}
+
+Chart group_chart(const Study& study, const std::string& baseline, const std::string& title, const RowText& group,
+                  const std::vector<std::string>& groups) {
+  Chart chart{.title = title};
+  for (const Payment& payment : payments(study))
+    chart.panels.push_back(ratio_dots(study, baseline, payment, group, groups));
+  if (!chart.panels.empty())
+    chart.finding = fmt::format("Lowest {}, by number of {} of {}: {}.", payments(study).front().series, "groups",
+                                groups.size(), winners(chart.panels.front()));
+  return chart;
+}
+
+double prediction_error(const StudyRow& row) {
+  const double own = row.number("estimated_cost");
+  const double estimate = std::isnan(own) ? row.number("estimated_pah") : own;
+  return std::abs(row.number("real_cost") / estimate - 1);
+}
+
+Chart prediction_chart(const Study& study) {
+  Chart chart{.title = "How well trees predict their cost"};
+  if (!any_measured(study.rows, prediction_error)) return chart;
+  ChartPanel panel{.title = "Error of the prediction against the full-traversal cost",
+                   .kind = ChartKind::kRanking,
+                   .y = {"mean of |real - predicted| / predicted"}};
+  panel.groups = recipes_of(study);
+  const auto kind = [](const StudyRow& row) { return row.kind.empty() ? "all tests" : row.kind + " areas"; };
+  const std::vector<std::string> kinds = distinct(study.rows, kind);
+  panel.series = coloured(kinds);
+  panel.measured = group_means(
+      study.rows, [](const StudyRow& row) { return row.recipe; }, kind, prediction_error);
+  std::string text;
+  for (const std::string& name : kinds) {
+    const std::vector<StudyRow> rows = filtered(study.rows, [&](const StudyRow& row) { return kind(row) == name; });
+    text += fmt::format("{}{} for {}", text.empty() ? "" : ", ", percent(mean_of(rows, prediction_error)), name);
+  }
+  chart.finding = "Mean error of the prediction over all recipes: " + text +
+                  "; the paper gives 2 % for planes and 12 % for points.";
+  chart.panels.push_back(std::move(panel));
+  return chart;
+}
+
+Chart build_chart(const Study& study, const std::string& baseline) {
+  Chart chart{.title = "What building costs"};
+  const RowValue build = column_value("build_seconds");
+  ChartPanel panel{.title = "Time to build, as a multiple of " + baseline + "'s",
+                   .kind = ChartKind::kRanking,
+                   .y = {"geometric mean over tests of recipe / " + baseline, true},
+                   .reference = 1};
+  const std::vector<Ranked> ranked = ranking(study, baseline, build);
+  if (ranked.empty()) return chart;
+  panel.series = {{"build time", "#1098ad"}};
+  for (const Ranked& r : ranked) {
+    panel.groups.push_back(r.recipe);
+    panel.measured.push_back({.series = "build time",
+                              .group = r.recipe,
+                              .y = r.ratio.mean,
+                              .low = r.ratio.low,
+                              .high = r.ratio.high,
+                              .count = r.ratio.count});
+  }
+  chart.finding = fmt::format(
+      "Trees of {} are built fastest ({} times the time of {}), those of {} slowest ({} times).", ranked.front().recipe,
+      short_number(ranked.front().ratio.mean), baseline, ranked.back().recipe, short_number(ranked.back().ratio.mean));
+  chart.panels.push_back(std::move(panel));
+  return chart;
+}
+
+}  // namespace
+
+std::vector<Chart> recipe_charts(const Study& study) {
+  if (recipes_of(study).size() < 2) return {};
+  const std::string baseline = baseline_recipe(study);
+  std::vector<Chart> charts{ranking_chart(study, baseline)};
+  if (const std::vector<std::string> groups = group_labels(study.rows);
+      groups.size() > 1 && groups.size() < kMostScenes)
+    charts.push_back(group_chart(study, baseline, "By kind of area and direction of rays", group_label, groups));
+  const auto scene = [](const StudyRow& row) { return row.scene; };
+  if (const std::vector<std::string> scenes = distinct(study.rows, scene);
+      scenes.size() > 1 && scenes.size() < kMostScenes)
+    charts.push_back(group_chart(study, baseline, "By scene", scene, scenes));
+  charts.push_back(prediction_chart(study));
+  charts.push_back(build_chart(study, baseline));
+  std::erase_if(charts, [](const Chart& chart) { return chart.panels.empty(); });
+  return charts;
+}
+
+}  // namespace raygrain
