@@ -3,6 +3,8 @@
 #include <cmath>
 #include <map>
 
+#include <fmt/format.h>
+
 #include "raygrain/chart.h"
 
 #include "report/canvas.h"
@@ -31,6 +33,10 @@ bool lies_down(const ChartPanel& panel) {
 
 bool has_number_axis(const ChartPanel& panel) {
   return panel.kind == ChartKind::kPoints || panel.kind == ChartKind::kLines;
+}
+
+std::string tick_text(double value) {
+  return fmt::format("{:.10g}", value);
 }
 
 /// What is said of a point when a reader points at it.
@@ -107,7 +113,7 @@ class PanelDrawing {
         y += 26;
       }
       if (published)
-        line(x, y - 6, x + 16, y - 6, kInk, 3);
+        line(x, y - 6, x + 13, y - 6, kInk, 3);
       else
         box(x, y - 13, x + 14, y + 1, colour);
       text(x + 22, y, name, kSoft);
@@ -141,13 +147,13 @@ class PanelDrawing {
     for (const double tick : values_.ticks()) {
       across(tick, kRule, 1);
       if (lies_down(panel_))
-        text(along(tick), bottom_ + 24, short_number(tick), kSoft, Anchor::kMiddle);
+        text(along(tick), bottom_ + 24, tick_text(tick), kSoft, Anchor::kMiddle);
       else
-        text(left_ - 8, along(tick) + 6, short_number(tick), kSoft, Anchor::kEnd);
+        text(left_ - 8, along(tick) + 6, tick_text(tick), kSoft, Anchor::kEnd);
     }
     if (has_number_axis(panel_))
       for (const double tick : numbers_.ticks())
-        text(number_place(tick), bottom_ + 26, short_number(tick), kSoft, Anchor::kMiddle);
+        text(number_place(tick), bottom_ + 26, tick_text(tick), kSoft, Anchor::kMiddle);
     else
       for (const std::string& group : panel_.groups) group_name(group);
   }

@@ -30,7 +30,7 @@ bool is_paper_recipe(std::string_view recipe) {
   return published_cost(recipe) != nullptr;
 }
 
-const PaperGroup* paper_group(const StudyRow& row) {
+const PaperGroup* paper_group(const ResultRow& row) {
   const auto found = std::find_if(kPaperGroups.begin(), kPaperGroups.end(), [&](const PaperGroup& group) {
     return group.kind == row.kind && group.variant == row.variant;
   });
@@ -39,21 +39,21 @@ const PaperGroup* paper_group(const StudyRow& row) {
 
 }  // namespace
 
-bool has_paper_tests(const Study& study) {
-  const auto in_group = [](const StudyRow& row) { return paper_group(row) != nullptr; };
+bool has_paper_tests(const StudyResults& study) {
+  const auto in_group = [](const ResultRow& row) { return paper_group(row) != nullptr; };
   const std::vector<std::string> recipes =
-      distinct(filtered(study.rows, in_group), [](const StudyRow& row) { return row.recipe; });
+      distinct(filtered(study.rows, in_group), [](const ResultRow& row) { return row.recipe; });
   const auto known = std::count_if(recipes.begin(), recipes.end(), is_paper_recipe);
   return known >= 2 && std::find(recipes.begin(), recipes.end(), kBaseline) != recipes.end();
 }
 
-std::string group_label(const StudyRow& row) {
+std::string group_label(const ResultRow& row) {
   if (const PaperGroup* group = paper_group(row)) return std::string(group->label);
   const std::string label = joined(row.kind, row.variant);
   return label.empty() ? joined(row.text("area"), row.text("ray_set")) : label;
 }
 
-std::vector<std::string> group_labels(std::span<const StudyRow> rows) {
+std::vector<std::string> group_labels(std::span<const ResultRow> rows) {
   const std::vector<std::string> found = distinct(rows, group_label);
   std::vector<std::string> labels;
   for (const PaperGroup& group : kPaperGroups)
@@ -63,14 +63,14 @@ std::vector<std::string> group_labels(std::span<const StudyRow> rows) {
   return labels;
 }
 
-std::vector<std::string> own_recipes(const Study& study) {
-  std::vector<std::string> recipes = distinct(study.rows, [](const StudyRow& row) { return row.recipe; });
+std::vector<std::string> own_recipes(const StudyResults& study) {
+  std::vector<std::string> recipes = distinct(study.rows, [](const ResultRow& row) { return row.recipe; });
   std::erase_if(recipes, [](const std::string& recipe) { return recipe.empty() || is_paper_recipe(recipe); });
   return recipes;
 }
 
-std::string baseline_recipe(const Study& study) {
-  const std::vector<std::string> recipes = distinct(study.rows, [](const StudyRow& row) { return row.recipe; });
+std::string baseline_recipe(const StudyResults& study) {
+  const std::vector<std::string> recipes = distinct(study.rows, [](const ResultRow& row) { return row.recipe; });
   if (std::find(recipes.begin(), recipes.end(), kBaseline) != recipes.end()) return std::string(kBaseline);
   const auto near =
       std::find_if(recipes.begin(), recipes.end(), [](const std::string& r) { return r.starts_with(kBaseline); });
@@ -91,24 +91,24 @@ std::vector<ChartSeries> coloured(const std::vector<std::string>& names) {
   return series;
 }
 
-double nanoseconds_per_ray(const StudyRow& row) {
+double nanoseconds_per_ray(const ResultRow& row) {
   return row.number("trace_seconds") * 1e9 / row.number("rays");
 }
 
-ChartPanel group_bars(std::span<const StudyRow> rows, const std::vector<std::string>& recipes, const std::string& title,
-                      const std::string& axis, const RowValue& value) {
+ChartPanel group_bars(std::span<const ResultRow> rows, const std::vector<std::string>& recipes,
+                      const std::string& title, const std::string& axis, const RowValue& value) {
   ChartPanel panel{.title = title, .y = {axis}};
-  const std::vector<StudyRow> shown = filtered(rows, [&](const StudyRow& row) {
+  const std::vector<ResultRow> shown = filtered(rows, [&](const ResultRow& row) {
     return std::find(recipes.begin(), recipes.end(), row.recipe) != recipes.end() && !std::isnan(value(row));
   });
   panel.groups = group_labels(shown);
   panel.series = coloured(recipes);
   panel.measured = group_means(
-      shown, group_label, [](const StudyRow& row) { return row.recipe; }, value);
+      shown, group_label, [](const ResultRow& row) { return row.recipe; }, value);
   return panel;
 }
 
-std::vector<ChartPanel> user_bars(std::span<const StudyRow> rows, const std::vector<std::string>& recipes) {
+std::vector<ChartPanel> user_bars(std::span<const ResultRow> rows, const std::vector<std::string>& recipes) {
   std::vector<ChartPanel> panels;
   const RowValue pruned = column_value("pruned_cost");
   if (any_measured(rows, pruned))
@@ -129,7 +129,7 @@ std::string percent(double share) {
   return short_number(share * 100) + " %";
 }
 
-std::string user_sentence(const Study& study, const std::string& recipe, const std::string& baseline) {
+std::string user_sentence(const StudyResults& study, const std::string& recipe, const std::string& baseline) {
   const PairedRatio pruned = paired_ratio(study.rows, recipe, baseline, column_value("pruned_cost"));
   const PairedRatio time = paired_ratio(study.rows, recipe, baseline, nanoseconds_per_ray);
   if (pruned.count == 0) return {};

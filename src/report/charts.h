@@ -12,59 +12,59 @@
 
 namespace raygrain {
 
-struct Study {
+struct StudyResults {
   std::string name, id;
-  std::vector<StudyRow> rows;
+  std::vector<ResultRow> rows;
 };
 
 inline constexpr std::string_view kBaseline = "SAH+LSPH";
 
 // The paper's figures 14, 16, 17, 18, 19, 20 and 22 (paper_*.cpp).
-Chart prediction_figure(const Study& study);
-std::vector<Chart> cost_figures(const Study& study);
-Chart split_time_figure(const Study& study);
-Chart overlap_cost_figure(const Study& study);
-Chart overlap_figure(const Study& study);
+Chart prediction_figure(const StudyResults& study);
+std::vector<Chart> cost_figures(const StudyResults& study);
+Chart split_time_figure(const StudyResults& study);
+Chart overlap_cost_figure(const StudyResults& study);
+Chart overlap_figure(const StudyResults& study);
 // Its tables.
 Chart parameter_table();
-Chart tuning_table(const Study& study);
+Chart tuning_table(const StudyResults& study);
 
 /// All recipes against the baseline: pruned cost, time, full cost; by group, by scene; prediction; building.
-std::vector<Chart> recipe_charts(const Study& study);
+std::vector<Chart> recipe_charts(const StudyResults& study);
 
 /// Charts over a number: areas, triangles, thresholds, hit ratios.
-std::vector<Chart> number_charts(const Study& study);
+std::vector<Chart> number_charts(const StudyResults& study);
 
 /// Does the study hold the paper's tests (kinds, variants, the baseline and another of its recipes)?
-bool has_paper_tests(const Study& study);
+bool has_paper_tests(const StudyResults& study);
 
 /// The label of a row's group: the paper's, or what kind, variant and area say.
-std::string group_label(const StudyRow& row);
+std::string group_label(const ResultRow& row);
 /// Groups that occur, the paper's first, in its order.
-std::vector<std::string> group_labels(std::span<const StudyRow> rows);
+std::vector<std::string> group_labels(std::span<const ResultRow> rows);
 
 /// Recipes of the study that the paper does not have, in order: a researcher's own.
-std::vector<std::string> own_recipes(const Study& study);
+std::vector<std::string> own_recipes(const StudyResults& study);
 /// SAH+LSPH where it is there, else what looks most like it.
-std::string baseline_recipe(const Study& study);
+std::string baseline_recipe(const StudyResults& study);
 
 /// Series with a colour each: a recipe of the paper has the same in every chart, the baseline is grey.
 std::vector<ChartSeries> coloured(const std::vector<std::string>& names);
 
 /// The time of a ray in nanoseconds; NaN where it was not measured.
-double nanoseconds_per_ray(const StudyRow& row);
+double nanoseconds_per_ray(const ResultRow& row);
 
 /// Upright bars of means in the paper's groups, one series per recipe.
-ChartPanel group_bars(std::span<const StudyRow> rows, const std::vector<std::string>& recipes, const std::string& title,
-                      const std::string& axis, const RowValue& value);
+ChartPanel group_bars(std::span<const ResultRow> rows, const std::vector<std::string>& recipes,
+                      const std::string& title, const std::string& axis, const RowValue& value);
 /// What users pay, as such bars: pruned cost, then time where it was measured.
-std::vector<ChartPanel> user_bars(std::span<const StudyRow> rows, const std::vector<std::string>& recipes);
+std::vector<ChartPanel> user_bars(std::span<const ResultRow> rows, const std::vector<std::string>& recipes);
 
 /// "1.35 times", "0.94 times"; three significant digits elsewhere: "0.0123", "12.3", "1234".
 std::string short_number(double value);
 std::string percent(double share);
 /// One sentence on what users pay: pruned cost, and time where it was measured, against the baseline.
-std::string user_sentence(const Study& study, const std::string& recipe, const std::string& baseline);
+std::string user_sentence(const StudyResults& study, const std::string& recipe, const std::string& baseline);
 
 /// `agreeing` of `all` statements of the paper were found true.
 Verdict verdict_of(size_t agreeing, size_t all);

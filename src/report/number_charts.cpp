@@ -3,7 +3,7 @@
 
 namespace raygrain {
 
-std::vector<Chart> number_charts(const Study&) {
+std::vector<Chart> number_charts(const StudyResults&) {
   return {};
 }
 

@@ -24,15 +24,15 @@ constexpr std::array<CostFigure, 3> kFigures{{
     {"Figure 18", "SAH+SPFH", "SPFH alone: SAH and SPFH against SAH and LSPH"},
 }};
 
-bool is_own_model(const StudyRow& row) {
+bool is_own_model(const ResultRow& row) {
   const auto end = kPaperScenes.begin() + kOwnModels;
   return std::find(kPaperScenes.begin(), end, row.scene) != end;
 }
 
 /// How many of the scenes from `begin` to `end` the rows hold.
-size_t scene_count(std::span<const StudyRow> rows, size_t count) {
+size_t scene_count(std::span<const ResultRow> rows, size_t count) {
   return static_cast<size_t>(std::count_if(kPaperScenes.begin(), kPaperScenes.begin() + count, [&](std::string_view s) {
-    return std::any_of(rows.begin(), rows.end(), [&](const StudyRow& row) { return row.scene == s; });
+    return std::any_of(rows.begin(), rows.end(), [&](const ResultRow& row) { return row.scene == s; });
   }));
 }
 
@@ -91,7 +91,7 @@ Agreement compare_groups(const ChartPanel& panel, const CostFigure& figure) {
   return result;
 }
 
-std::vector<std::string> figure_recipes(const Study& study, const CostFigure& figure) {
+std::vector<std::string> figure_recipes(const StudyResults& study, const CostFigure& figure) {
   std::vector<std::string> recipes{std::string(figure.recipe)};
   if (figure.recipe == "PAH+LSPH" && !rows_of_recipe(study.rows, kMislabelledRecipe).empty())
     recipes.emplace_back(kMislabelledRecipe);
@@ -102,17 +102,18 @@ std::vector<std::string> figure_recipes(const Study& study, const CostFigure& fi
   return recipes;
 }
 
-std::string finding(const Study& study, const CostFigure& figure, const Agreement& agreement) {
-  std::string text = fmt::format(
-      "By the paper's full-traversal cost {} is cheaper than {} in {} of {} groups, where the paper found {}: the two "
-      "agree on {} of {}",
+std::string finding(const StudyResults& study, const CostFigure& figure, const Agreement& agreement) {
+  const std::string users = user_sentence(study, std::string(figure.recipe), std::string(kBaseline));
+  return fmt::format(
+      "{}{}y the paper's full-traversal cost {} is cheaper than {} in {} of {} groups, where the paper found {}: the "
+      "two "
+      "agree on {} of {}.",
+      users.empty() ? "" : "With " + std::string(figure.recipe) + " " + users + "; ", users.empty() ? "B" : "b",
       figure.recipe, kBaseline, agreement.cheaper, agreement.groups, agreement.published_cheaper, agreement.agreeing,
       agreement.groups);
-  const std::string users = user_sentence(study, std::string(figure.recipe), std::string(kBaseline));
-  return text + (users.empty() ? "." : "; " + users + ".");
 }
 
-void add_notes(Chart& chart, const Study& study, const CostFigure& figure) {
+void add_notes(Chart& chart, const StudyResults& study, const CostFigure& figure) {
   if (figure.recipe == "PAH+LSPH")
     chart.notes.emplace_back(
         "The point half of the published figure was made with another recipe, SAH+SPFH with threshold 0.99; rows named "
@@ -123,7 +124,7 @@ void add_notes(Chart& chart, const Study& study, const CostFigure& figure) {
         fmt::format("{} more recipes of this study are in the chart of all recipes.", own - kMostOwnRecipes));
 }
 
-Chart cost_figure(const Study& study, const CostFigure& figure) {
+Chart cost_figure(const StudyResults& study, const CostFigure& figure) {
   Chart chart{.label = std::string(figure.label), .title = std::string(figure.title)};
   const std::vector<std::string> recipes = figure_recipes(study, figure);
   chart.panels = user_bars(study.rows, recipes);
@@ -157,7 +158,7 @@ Chart cost_figure(const Study& study, const CostFigure& figure) {
 
 }  // namespace
 
-std::vector<Chart> cost_figures(const Study& study) {
+std::vector<Chart> cost_figures(const StudyResults& study) {
   std::vector<Chart> charts;
   for (const CostFigure& figure : kFigures)
     if (!rows_of_recipe(study.rows, figure.recipe).empty()) charts.push_back(cost_figure(study, figure));

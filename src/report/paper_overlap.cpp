@@ -13,34 +13,34 @@ namespace {
 constexpr std::string_view kFull = "PAH+SPFH";
 constexpr const char* kOverlapColumn = "overlap4_culled";
 
-std::vector<std::pair<double, double>> pairs_of(std::span<const StudyRow> rows, const char* x, const char* y) {
+std::vector<std::pair<double, double>> pairs_of(std::span<const ResultRow> rows, const char* x, const char* y) {
   std::vector<std::pair<double, double>> points;
-  for (const StudyRow& row : rows)
+  for (const ResultRow& row : rows)
     if (!std::isnan(row.number(x)) && !std::isnan(row.number(y))) points.emplace_back(row.number(x), row.number(y));
   return points;
 }
 
-ChartPanel scatter(const Study& study, const std::string& title, const std::string& axis, const char* column) {
+ChartPanel scatter(const StudyResults& study, const std::string& title, const std::string& axis, const char* column) {
   ChartPanel panel{.title = title,
                    .kind = ChartKind::kPoints,
                    .x = {"overlap of siblings, levels 0 to 4, culled"},
                    .y = {axis, true}};
   std::vector<std::string> recipes;
-  for (const StudyRow& row : study.rows) {
+  for (const ResultRow& row : study.rows) {
     const double x = row.number(kOverlapColumn), y = row.number(column);
     if (std::isnan(x) || !(y > 0)) continue;
     panel.measured.push_back({.series = row.recipe, .x = x, .y = y, .label = row.scene + ", " + group_label(row)});
   }
-  panel.series = coloured(distinct(study.rows, [](const StudyRow& row) { return row.recipe; }));
+  panel.series = coloured(distinct(study.rows, [](const ResultRow& row) { return row.recipe; }));
   return panel;
 }
 
 }  // namespace
 
-Chart overlap_cost_figure(const Study& study) {
+Chart overlap_cost_figure(const StudyResults& study) {
   Chart chart{.label = "Figure 20", .title = "Cost against overlap of siblings"};
   chart.verdict = Verdict::kMissing;
-  const std::vector<StudyRow> full = rows_of_recipe(study.rows, kFull);
+  const std::vector<ResultRow> full = rows_of_recipe(study.rows, kFull);
   const double real = correlation(pairs_of(full, kOverlapColumn, "real_cost"));
   const double pruned = correlation(pairs_of(full, kOverlapColumn, "pruned_cost"));
   if (std::isnan(real)) return chart;
@@ -59,7 +59,7 @@ Chart overlap_cost_figure(const Study& study) {
   return chart;
 }
 
-Chart overlap_figure(const Study& study) {
+Chart overlap_figure(const StudyResults& study) {
   Chart chart{.label = "Figure 22", .title = "Overlap of siblings in the top levels"};
   chart.verdict = Verdict::kMissing;
   std::vector<std::string> recipes{std::string(kFull), std::string(kBaseline)};
@@ -88,7 +88,7 @@ Chart overlap_figure(const Study& study) {
   for (const std::string& group : panel.groups) {
     const auto here = [&](std::string_view recipe) {
       return mean_of(
-          filtered(study.rows, [&](const StudyRow& r) { return r.recipe == recipe && group_label(r) == group; }),
+          filtered(study.rows, [&](const ResultRow& r) { return r.recipe == recipe && group_label(r) == group; }),
           overlap);
     };
     const double difference = here(kFull) - here(kBaseline);

@@ -14,7 +14,7 @@ constexpr std::string_view kFacing = "SAH+SPFH";
 constexpr double kSameTime = 0.5;  // "the same" up to this share: single times are noisy
 
 RowValue milliseconds(const char* column) {
-  return [column](const StudyRow& row) { return row.number(column) * 1e3; };
+  return [column](const ResultRow& row) { return row.number(column) * 1e3; };
 }
 
 void append(std::vector<ChartPoint>& points, std::vector<ChartPoint> more) {
@@ -31,7 +31,7 @@ ChartPanel published_alone() {
 
 }  // namespace
 
-Chart split_time_figure(const Study& study) {
+Chart split_time_figure(const StudyResults& study) {
   Chart chart{.label = "Figure 19", .title = "Time to choose split orientations: SPFH against LSPH"};
   chart.verdict = Verdict::kMissing;
   std::vector<std::string> recipes{std::string(kFacing), std::string(kBaseline)};

@@ -42,8 +42,8 @@ std::string case_name(const PublishedTuning& row) {
 }
 
 /// Rows built with PAH+SPFH and a case's three thresholds.
-std::vector<StudyRow> rows_of_case(const Study& study, const PublishedTuning& row) {
-  return filtered(study.rows, [&](const StudyRow& r) {
+std::vector<ResultRow> rows_of_case(const StudyResults& study, const PublishedTuning& row) {
+  return filtered(study.rows, [&](const ResultRow& r) {
     return r.recipe.starts_with("PAH+SPFH") && near(r.number("split_plane_quality_threshold"), row.quality) &&
            near(r.number("acceptable_ratio"), row.acceptable) && near(r.number("excellent_ratio"), row.excellent);
   });
@@ -66,14 +66,14 @@ constexpr Column kColumns[] = {
 };
 constexpr const char* kTuningSeries = "PAH+SPFH";
 
-ChartPanel tuning_panel(const Study& study, const Column& column) {
+ChartPanel tuning_panel(const StudyResults& study, const Column& column) {
   ChartPanel panel{.title = column.title, .x = {"quality / acceptable / excellent"}, .y = {column.axis}};
   panel.series = coloured({kTuningSeries});
   for (const PublishedTuning& row : kTable2) {
     panel.groups.push_back(case_name(row));
-    const auto group = [&](const StudyRow&) { return case_name(row); };
+    const auto group = [&](const ResultRow&) { return case_name(row); };
     for (ChartPoint& point : group_means(
-             rows_of_case(study, row), group, [](const StudyRow&) { return std::string(kTuningSeries); },
+             rows_of_case(study, row), group, [](const ResultRow&) { return std::string(kTuningSeries); },
              column_value(column.column)))
       panel.measured.push_back(std::move(point));
     if (column.published)
@@ -86,7 +86,7 @@ ChartPanel tuning_panel(const Study& study, const Column& column) {
 }
 
 /// Of the four changed cases, how many move the cost the way that the paper says?
-void judge(Chart& chart, const Study& study, const char* column, std::string& sentence, const char* what) {
+void judge(Chart& chart, const StudyResults& study, const char* column, std::string& sentence, const char* what) {
   const auto cost = [&](size_t i) { return mean_of(rows_of_case(study, kTable2[i]), column_value(column)); };
   size_t cases = 0, agreeing = 0;
   for (size_t i = 1; i < kTable2.size(); ++i) {
@@ -120,13 +120,13 @@ Chart parameter_table() {
   return chart;
 }
 
-Chart tuning_table(const Study& study) {
+Chart tuning_table(const StudyResults& study) {
   Chart chart{.label = "Table 2", .title = "Three thresholds: split plane quality, acceptable and excellent ratio"};
   chart.verdict = Verdict::kMissing;
   chart.table.columns = {"quality",   "acceptable",   "excellent", "pruned cost",    "real cost",
                          "published", "orientations", "published", "fallback share", "published"};
   for (const PublishedTuning& row : kTable2) {
-    const std::vector<StudyRow> rows = rows_of_case(study, row);
+    const std::vector<ResultRow> rows = rows_of_case(study, row);
     const auto mean = [&](const char* column) { return short_number(mean_of(rows, column_value(column))); };
     chart.table.rows.push_back(
         {fmt::format("{}", row.quality), fmt::format("{}", row.acceptable), fmt::format("{}", row.excellent),

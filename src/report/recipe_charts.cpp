@@ -21,7 +21,7 @@ struct Payment {
 };
 
 /// What is paid, the users' part first.
-std::vector<Payment> payments(const Study& study) {
+std::vector<Payment> payments(const StudyResults& study) {
   std::vector<Payment> all{{"pruned cost", "#d9480f", column_value("pruned_cost")},
                            {"time per ray", "#2f9e44", nanoseconds_per_ray},
                            {"full-traversal cost (the paper's)", "#868e96", column_value("real_cost")}};
@@ -29,8 +29,8 @@ std::vector<Payment> payments(const Study& study) {
   return all;
 }
 
-std::vector<std::string> recipes_of(const Study& study) {
-  std::vector<std::string> recipes = distinct(study.rows, [](const StudyRow& row) { return row.recipe; });
+std::vector<std::string> recipes_of(const StudyResults& study) {
+  std::vector<std::string> recipes = distinct(study.rows, [](const ResultRow& row) { return row.recipe; });
   std::erase(recipes, std::string{});
   return recipes;
 }
@@ -41,7 +41,7 @@ struct Ranked {
 };
 
 /// Recipes by the ratio of what users pay, the best first.
-std::vector<Ranked> ranking(const Study& study, const std::string& baseline, const RowValue& value) {
+std::vector<Ranked> ranking(const StudyResults& study, const std::string& baseline, const RowValue& value) {
   std::vector<Ranked> ranked;
   for (const std::string& recipe : recipes_of(study))
     if (const PairedRatio ratio = paired_ratio(study.rows, recipe, baseline, value); ratio.count > 0)
@@ -51,7 +51,7 @@ std::vector<Ranked> ranking(const Study& study, const std::string& baseline, con
   return ranked;
 }
 
-Chart ranking_chart(const Study& study, const std::string& baseline) {
+Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
   Chart chart{.title = "All recipes against " + baseline};
   ChartPanel panel{.title = "Paid per ray, as a multiple of " + baseline + "'s",
                    .kind = ChartKind::kRanking,
@@ -84,8 +84,8 @@ Chart ranking_chart(const Study& study, const std::string& baseline) {
 }
 
 /// Each recipe's multiple of the baseline in every group of tests.
-ChartPanel ratio_dots(const Study& study, const std::string& baseline, const Payment& payment, const RowText& group,
-                      std::vector<std::string> groups) {
+ChartPanel ratio_dots(const StudyResults& study, const std::string& baseline, const Payment& payment,
+                      const RowText& group, std::vector<std::string> groups) {
   ChartPanel panel{.title = std::string(payment.series) + " as a multiple of " + baseline + "'s",
                    .kind = ChartKind::kDots,
                    .y = {"geometric mean over tests of recipe / " + baseline},
@@ -93,7 +93,7 @@ ChartPanel ratio_dots(const Study& study, const std::string& baseline, const Pay
                    .series = coloured(recipes_of(study)),
                    .reference = 1};
   for (const std::string& name : panel.groups) {
-    const std::vector<StudyRow> here = filtered(study.rows, [&](const StudyRow& row) { return group(row) == name; });
+    const std::vector<ResultRow> here = filtered(study.rows, [&](const ResultRow& row) { return group(row) == name; });
     for (const ChartSeries& series : panel.series) {
       const PairedRatio ratio = paired_ratio(here, series.name, baseline, payment.value);
       if (ratio.count > 0)
@@ -124,8 +124,8 @@ std::string winners(const ChartPanel& panel) {
   return text;
 }
 
-Chart group_chart(const Study& study, const std::string& baseline, const std::string& title, const RowText& group,
-                  const std::vector<std::string>& groups) {
+Chart group_chart(const StudyResults& study, const std::string& baseline, const std::string& title,
+                  const RowText& group, const std::vector<std::string>& groups) {
   Chart chart{.title = title};
   for (const Payment& payment : payments(study))
     chart.panels.push_back(ratio_dots(study, baseline, payment, group, groups));
@@ -135,27 +135,27 @@ Chart group_chart(const Study& study, const std::string& baseline, const std::st
   return chart;
 }
 
-double prediction_error(const StudyRow& row) {
+double prediction_error(const ResultRow& row) {
   const double own = row.number("estimated_cost");
   const double estimate = std::isnan(own) ? row.number("estimated_pah") : own;
   return std::abs(row.number("real_cost") / estimate - 1);
 }
 
-Chart prediction_chart(const Study& study) {
+Chart prediction_chart(const StudyResults& study) {
   Chart chart{.title = "How well trees predict their cost"};
   if (!any_measured(study.rows, prediction_error)) return chart;
   ChartPanel panel{.title = "Error of the prediction against the full-traversal cost",
                    .kind = ChartKind::kRanking,
                    .y = {"mean of |real - predicted| / predicted"}};
   panel.groups = recipes_of(study);
-  const auto kind = [](const StudyRow& row) { return row.kind.empty() ? "all tests" : row.kind + " areas"; };
+  const auto kind = [](const ResultRow& row) { return row.kind.empty() ? "all tests" : row.kind + " areas"; };
   const std::vector<std::string> kinds = distinct(study.rows, kind);
   panel.series = coloured(kinds);
   panel.measured = group_means(
-      study.rows, [](const StudyRow& row) { return row.recipe; }, kind, prediction_error);
+      study.rows, [](const ResultRow& row) { return row.recipe; }, kind, prediction_error);
   std::string text;
   for (const std::string& name : kinds) {
-    const std::vector<StudyRow> rows = filtered(study.rows, [&](const StudyRow& row) { return kind(row) == name; });
+    const std::vector<ResultRow> rows = filtered(study.rows, [&](const ResultRow& row) { return kind(row) == name; });
     text += fmt::format("{}{} for {}", text.empty() ? "" : ", ", percent(mean_of(rows, prediction_error)), name);
   }
   chart.finding = "Mean error of the prediction over all recipes: " + text +
@@ -164,11 +164,11 @@ Chart prediction_chart(const Study& study) {
   return chart;
 }
 
-Chart build_chart(const Study& study, const std::string& baseline) {
+Chart build_chart(const StudyResults& study, const std::string& baseline) {
   Chart chart{.title = "What building costs"};
   const RowValue build = column_value("build_seconds");
   ChartPanel panel{.title = "Time to build, as a multiple of " + baseline + "'s",
-                   .kind = ChartKind::kRanking,
+                   .kind = ChartKind::kDots,
                    .y = {"geometric mean over tests of recipe / " + baseline, true},
                    .reference = 1};
   const std::vector<Ranked> ranked = ranking(study, baseline, build);
@@ -192,14 +192,14 @@ Chart build_chart(const Study& study, const std::string& baseline) {
 
 }  // namespace
 
-std::vector<Chart> recipe_charts(const Study& study) {
+std::vector<Chart> recipe_charts(const StudyResults& study) {
   if (recipes_of(study).size() < 2) return {};
   const std::string baseline = baseline_recipe(study);
   std::vector<Chart> charts{ranking_chart(study, baseline)};
   if (const std::vector<std::string> groups = group_labels(study.rows);
       groups.size() > 1 && groups.size() < kMostScenes)
     charts.push_back(group_chart(study, baseline, "By kind of area and direction of rays", group_label, groups));
-  const auto scene = [](const StudyRow& row) { return row.scene; };
+  const auto scene = [](const ResultRow& row) { return row.scene; };
   if (const std::vector<std::string> scenes = distinct(study.rows, scene);
       scenes.size() > 1 && scenes.size() < kMostScenes)
     charts.push_back(group_chart(study, baseline, "By scene", scene, scenes));

@@ -19,7 +19,8 @@ double round_step(double range) {
 std::vector<double> linear_ticks(double lo, double hi) {
   const double step = round_step(hi - lo);
   std::vector<double> ticks;
-  for (double i = std::ceil(lo / step - 1e-9); i * step <= hi * (1 + 1e-9); ++i) ticks.push_back(i * step);
+  for (double i = std::ceil(lo / step - 1e-9); i * step <= hi * (1 + 1e-9); ++i)
+    ticks.push_back(i == 0 ? 0 : i * step);  // not -0
   return ticks;
 }
 

@@ -15,9 +15,10 @@ namespace {
 constexpr std::array<std::string_view, 6> kOwnMetrics{"estimated_pah", "estimated_sah",    "overlap100_culled",
                                                       "areas",         "top_level_levels", "foreign_share"};
 /// What makes two rows the same test of different trees.
-constexpr std::array<std::string_view, 6> kTestColumns{"scene", "kind", "variant", "area", "ray_set", "areas"};
+constexpr std::array<std::string_view, 8> kTestColumns{"scene",   "kind",  "variant", "area",
+                                                       "ray_set", "areas", "seed",    "repeat"};
 
-std::string test_key(const StudyRow& row) {
+std::string test_key(const ResultRow& row) {
   std::string key;
   for (const std::string_view column : kTestColumns) key += std::string(row.text(column)) + '\n';
   return key;
@@ -37,61 +38,63 @@ bool is_number(std::string_view text) {
   return error == std::errc{} && end == text.data() + text.size();
 }
 
-std::string_view StudyRow::text(std::string_view column) const {
+std::string_view ResultRow::text(std::string_view column) const {
   const auto cell = cells.find(column);
   return cell == cells.end() ? std::string_view{} : cell->second;
 }
 
-double StudyRow::number(std::string_view column) const {
+double ResultRow::number(std::string_view column) const {
   const std::string_view cell = text(column);
   double value = kNotMeasured;
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   return error == std::errc{} && end == cell.data() + cell.size() && std::isfinite(value) ? value : kNotMeasured;
 }
 
-std::vector<StudyRow> study_rows(const ResultTable& table) {
-  std::vector<StudyRow> rows;
+std::vector<ResultRow> study_rows(const ResultTable& table) {
+  std::vector<ResultRow> rows;
   for (const std::vector<std::string>& cells : table.rows) {
-    StudyRow& row = rows.emplace_back();
+    ResultRow& row = rows.emplace_back();
     for (size_t i = 0; i < cells.size() && i < table.columns.size(); ++i) row.cells[table.columns[i]] = cells[i];
     row.scene = row.text("scene");
     row.kind = row.text("kind");
     row.variant = row.text("variant");
     row.recipe = row.text(kRecipeColumn);
+    const std::string_view setting = row.text("setting");
+    if (!setting.empty()) row.recipe.append(" ").append(setting);
   }
   return rows;
 }
 
 RowValue column_value(std::string column) {
-  return [column = std::move(column)](const StudyRow& row) { return row.number(column); };
+  return [column = std::move(column)](const ResultRow& row) { return row.number(column); };
 }
 
-bool any_measured(std::span<const StudyRow> rows, const RowValue& value) {
-  return std::any_of(rows.begin(), rows.end(), [&](const StudyRow& row) { return !std::isnan(value(row)); });
+bool any_measured(std::span<const ResultRow> rows, const RowValue& value) {
+  return std::any_of(rows.begin(), rows.end(), [&](const ResultRow& row) { return !std::isnan(value(row)); });
 }
 
-std::vector<std::string> distinct(std::span<const StudyRow> rows, const RowText& text) {
+std::vector<std::string> distinct(std::span<const ResultRow> rows, const RowText& text) {
   std::vector<std::string> result;
-  for (const StudyRow& row : rows)
+  for (const ResultRow& row : rows)
     if (const std::string value = text(row); std::find(result.begin(), result.end(), value) == result.end())
       result.push_back(value);
   return result;
 }
 
-std::vector<StudyRow> filtered(std::span<const StudyRow> rows, const std::function<bool(const StudyRow&)>& keep) {
-  std::vector<StudyRow> result;
+std::vector<ResultRow> filtered(std::span<const ResultRow> rows, const std::function<bool(const ResultRow&)>& keep) {
+  std::vector<ResultRow> result;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(result), keep);
   return result;
 }
 
-std::vector<StudyRow> rows_of_recipe(std::span<const StudyRow> rows, std::string_view recipe) {
-  return filtered(rows, [&](const StudyRow& row) { return row.recipe == recipe; });
+std::vector<ResultRow> rows_of_recipe(std::span<const ResultRow> rows, std::string_view recipe) {
+  return filtered(rows, [&](const ResultRow& row) { return row.recipe == recipe; });
 }
 
-std::vector<ChartPoint> group_means(std::span<const StudyRow> rows, const RowText& group, const RowText& series,
+std::vector<ChartPoint> group_means(std::span<const ResultRow> rows, const RowText& group, const RowText& series,
                                     const RowValue& value) {
   std::vector<ChartPoint> points;
-  for (const StudyRow& row : rows) {
+  for (const ResultRow& row : rows) {
     const double v = value(row);
     if (std::isnan(v)) continue;
     const std::string g = group(row), s = series(row);
@@ -110,10 +113,10 @@ std::vector<ChartPoint> group_means(std::span<const StudyRow> rows, const RowTex
   return points;
 }
 
-double mean_of(std::span<const StudyRow> rows, const RowValue& value) {
+double mean_of(std::span<const ResultRow> rows, const RowValue& value) {
   double sum = 0;
   size_t count = 0;
-  for (const StudyRow& row : rows)
+  for (const ResultRow& row : rows)
     if (const double v = value(row); !std::isnan(v)) {
       sum += v;
       ++count;
@@ -121,14 +124,14 @@ double mean_of(std::span<const StudyRow> rows, const RowValue& value) {
   return count == 0 ? kNotMeasured : sum / static_cast<double>(count);
 }
 
-PairedRatio paired_ratio(std::span<const StudyRow> rows, std::string_view recipe, std::string_view baseline,
+PairedRatio paired_ratio(std::span<const ResultRow> rows, std::string_view recipe, std::string_view baseline,
                          const RowValue& value) {
   std::map<std::string, double> base;
-  for (const StudyRow& row : rows)
+  for (const ResultRow& row : rows)
     if (row.recipe == baseline) base.emplace(test_key(row), value(row));
   PairedRatio result;
   double sum = 0;
-  for (const StudyRow& row : rows) {
+  for (const ResultRow& row : rows) {
     if (row.recipe != recipe) continue;
     const auto other = base.find(test_key(row));
     const double ratio = other == base.end() ? kNotMeasured : value(row) / other->second;

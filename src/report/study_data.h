@@ -20,7 +20,7 @@ bool is_metric(std::string_view column);
 bool is_number(std::string_view text);
 
 /// One test: its names and numbers.
-struct StudyRow {
+struct ResultRow {
   std::string scene, kind, variant, recipe;
   std::map<std::string, std::string, std::less<>> cells;
 
@@ -30,23 +30,23 @@ struct StudyRow {
   double number(std::string_view column) const;
 };
 
-std::vector<StudyRow> study_rows(const ResultTable& table);
+std::vector<ResultRow> study_rows(const ResultTable& table);
 
-using RowText = std::function<std::string(const StudyRow&)>;
-using RowValue = std::function<double(const StudyRow&)>;
+using RowText = std::function<std::string(const ResultRow&)>;
+using RowValue = std::function<double(const ResultRow&)>;
 RowValue column_value(std::string column);
 
-bool any_measured(std::span<const StudyRow> rows, const RowValue& value);
+bool any_measured(std::span<const ResultRow> rows, const RowValue& value);
 /// The different values in the order of their first appearance.
-std::vector<std::string> distinct(std::span<const StudyRow> rows, const RowText& text);
+std::vector<std::string> distinct(std::span<const ResultRow> rows, const RowText& text);
 /// The rows that `keep` keeps.
-std::vector<StudyRow> filtered(std::span<const StudyRow> rows, const std::function<bool(const StudyRow&)>& keep);
-std::vector<StudyRow> rows_of_recipe(std::span<const StudyRow> rows, std::string_view recipe);
+std::vector<ResultRow> filtered(std::span<const ResultRow> rows, const std::function<bool(const ResultRow&)>& keep);
+std::vector<ResultRow> rows_of_recipe(std::span<const ResultRow> rows, std::string_view recipe);
 
 /// The mean of `value` over the rows of each pair of group and series; what was not measured is left out.
-std::vector<ChartPoint> group_means(std::span<const StudyRow> rows, const RowText& group, const RowText& series,
+std::vector<ChartPoint> group_means(std::span<const ResultRow> rows, const RowText& group, const RowText& series,
                                     const RowValue& value);
-double mean_of(std::span<const StudyRow> rows, const RowValue& value);
+double mean_of(std::span<const ResultRow> rows, const RowValue& value);
 
 /// Tests that two recipes share (all names but the recipe's are equal), compared test by test.
 struct PairedRatio {
@@ -54,7 +54,7 @@ struct PairedRatio {
   double low = kNotMeasured, high = kNotMeasured;
   size_t count = 0;
 };
-PairedRatio paired_ratio(std::span<const StudyRow> rows, std::string_view recipe, std::string_view baseline,
+PairedRatio paired_ratio(std::span<const ResultRow> rows, std::string_view recipe, std::string_view baseline,
                          const RowValue& value);
 
 /// Pearson's coefficient; NaN below three points.

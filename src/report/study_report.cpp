@@ -45,13 +45,13 @@ std::ptrdiff_t rank(std::string_view name) {
 }
 
 /// Studies in the order of the report, with ids that differ.
-std::vector<Study> make_studies(std::span<const ResultTable> tables) {
-  std::vector<Study> studies;
+std::vector<StudyResults> make_studies(std::span<const ResultTable> tables) {
+  std::vector<StudyResults> studies;
   for (const ResultTable& table : tables) studies.push_back({table.study, id_of(table.study), study_rows(table)});
   std::stable_sort(studies.begin(), studies.end(),
-                   [](const Study& a, const Study& b) { return rank(a.name) < rank(b.name); });
+                   [](const StudyResults& a, const StudyResults& b) { return rank(a.name) < rank(b.name); });
   std::set<std::string> used;
-  for (Study& study : studies)
+  for (StudyResults& study : studies)
     for (const std::string id = study.id; !used.insert(study.id).second;)
       study.id = id + "-" + std::to_string(used.size());
   return studies;
@@ -61,7 +61,7 @@ void append(std::vector<Chart>& charts, std::vector<Chart> more) {
   std::move(more.begin(), more.end(), std::back_inserter(charts));
 }
 
-std::vector<Chart> paper_charts(const Study& study) {
+std::vector<Chart> paper_charts(const StudyResults& study) {
   std::vector<Chart> charts{prediction_figure(study)};
   append(charts, cost_figures(study));
   charts.push_back(split_time_figure(study));
@@ -70,7 +70,7 @@ std::vector<Chart> paper_charts(const Study& study) {
   return charts;
 }
 
-ChartSection section_of(const Study& study) {
+ChartSection section_of(const StudyResults& study) {
   const KnownStudy* known = known_study(study.name);
   ChartSection section{
       study.id, known ? std::string(known->title) : study.name, known ? std::string(known->text) : "", {}};
@@ -87,15 +87,15 @@ ChartSection section_of(const Study& study) {
 }
 
 /// Values of a column over all rows, each once.
-std::string values_of(const Study& study, std::string_view column) {
+std::string values_of(const StudyResults& study, std::string_view column) {
   std::string text;
   for (const std::string& value :
-       distinct(study.rows, [&](const StudyRow& row) { return std::string(row.text(column)); }))
+       distinct(study.rows, [&](const ResultRow& row) { return std::string(row.text(column)); }))
     if (!value.empty()) text += (text.empty() ? "" : ", ") + value;
   return text;
 }
 
-void add_facts(StudyReport& report, const Study& study) {
+void add_facts(StudyReport& report, const StudyResults& study) {
   std::string text = fmt::format("{} row{}", study.rows.size(), study.rows.size() == 1 ? "" : "s");
   for (const char* column : {"scene", "commit", "compiler", "cpu", "isa", "threads", "seed", "rays"})
     if (const std::string values = values_of(study, column); !values.empty())
@@ -109,7 +109,7 @@ StudyReport make_study_report(std::span<const ResultTable> tables) {
   if (tables.empty()) throw Error(ErrorCode::kUsage, "report", "needs a results file", "Run raygrain study first");
   StudyReport report;
   report.title = "raygrain: what trees for known rays cost";
-  for (const Study& study : make_studies(tables)) {
+  for (const StudyResults& study : make_studies(tables)) {
     add_facts(report, study);
     report.sections.push_back(section_of(study));
   }
