@@ -31,7 +31,7 @@ function rowOf(point: Point, source: string): Row {
     source,
     value: shortNumber(point.y),
     at: point.x === undefined ? '' : shortNumber(point.x),
-    about: [point.label, range].filter(Boolean).join('; '),
+    about: [point.label, range].filter(Boolean).join("; ") || "one value",
   };
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -92,7 +93,29 @@ std::vector<ChartSeries> coloured(const std::vector<std::string>& names) {
 }
 
 double nanoseconds_per_ray(const ResultRow& row) {
-  return row.number("trace_seconds") * 1e9 / row.number("rays");
+  const double seconds = row.number("ray_seconds");
+  return std::isnan(seconds) ? row.number("trace_seconds") * 1e9 / row.number("rays") : seconds * 1e9;
+}
+
+ChartPanel line_panel(std::span<const ResultRow> rows, const std::string& title, const RowText& series,
+                      const std::pair<ChartAxis, RowValue>& x, const std::pair<ChartAxis, RowValue>& y) {
+  ChartPanel panel{.title = title, .kind = ChartKind::kLines, .x = x.first, .y = y.first};
+  const std::vector<ResultRow> shown = filtered(
+      rows, [&](const ResultRow& row) { return std::isfinite(x.second(row)) && std::isfinite(y.second(row)); });
+  panel.series = coloured(distinct(shown, series));
+  panel.measured = group_means(
+      shown, [&](const ResultRow& row) { return fmt::format("{}", x.second(row)); }, series, y.second);
+  for (ChartPoint& point : panel.measured) point.x = std::stod(std::exchange(point.group, {}));
+  return panel;
+}
+
+std::vector<ResultRow> main_rays(std::span<const ResultRow> rows) {
+  const std::vector<std::string> sets =
+      distinct(rows, [](const ResultRow& row) { return std::string(row.text("ray_set")); });
+  const bool matched = std::find(sets.begin(), sets.end(), "matched") != sets.end();
+  const std::string chosen = matched || sets.empty() ? "matched" : sets.front();
+  return sets.size() < 2 ? std::vector<ResultRow>(rows.begin(), rows.end())
+                         : filtered(rows, [&](const ResultRow& row) { return row.text("ray_set") == chosen; });
 }
 
 ChartPanel group_bars(std::span<const ResultRow> rows, const std::vector<std::string>& recipes,

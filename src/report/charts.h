@@ -32,8 +32,12 @@ Chart tuning_table(const StudyResults& study);
 /// All recipes against the baseline: pruned cost, time, full cost; by group, by scene; prediction; building.
 std::vector<Chart> recipe_charts(const StudyResults& study);
 
-/// Charts over a number: areas, triangles, thresholds, hit ratios.
-std::vector<Chart> number_charts(const StudyResults& study);
+// What the paper called for, or left at an estimate: nothing where the study holds no such rows.
+std::vector<Chart> parameter_charts(const StudyResults& study);
+std::vector<Chart> area_charts(const StudyResults& study);
+std::vector<Chart> memory_charts(const StudyResults& study);
+std::vector<Chart> scaling_charts(const StudyResults& study);
+std::vector<Chart> stress_charts(const StudyResults& study);
 
 /// Does the study hold the paper's tests (kinds, variants, the baseline and another of its recipes)?
 bool has_paper_tests(const StudyResults& study);
@@ -42,6 +46,13 @@ bool has_paper_tests(const StudyResults& study);
 std::string group_label(const ResultRow& row);
 /// Groups that occur, the paper's first, in its order.
 std::vector<std::string> group_labels(std::span<const ResultRow> rows);
+
+/// A chart over a number: means of `value` over the rows of each series at each x.
+ChartPanel line_panel(std::span<const ResultRow> rows, const std::string& title, const RowText& series,
+                      const std::pair<ChartAxis, RowValue>& x, const std::pair<ChartAxis, RowValue>& y);
+
+/// The rows of the rays that match the areas' own distribution, where a study has several ray sets.
+std::vector<ResultRow> main_rays(std::span<const ResultRow> rows);
 
 /// Recipes of the study that the paper does not have, in order: a researcher's own.
 std::vector<std::string> own_recipes(const StudyResults& study);

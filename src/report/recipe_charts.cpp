@@ -12,7 +12,7 @@ namespace raygrain {
 
 namespace {
 
-constexpr size_t kMostScenes = 40;  // on one panel
+constexpr size_t kMostGroups = 40;  // on one panel
 
 struct Payment {
   const char* series;
@@ -130,8 +130,8 @@ Chart group_chart(const StudyResults& study, const std::string& baseline, const 
   for (const Payment& payment : payments(study))
     chart.panels.push_back(ratio_dots(study, baseline, payment, group, groups));
   if (!chart.panels.empty())
-    chart.finding = fmt::format("Lowest {}, by number of {} of {}: {}.", payments(study).front().series, "groups",
-                                groups.size(), winners(chart.panels.front()));
+    chart.finding = fmt::format("Lowest {} in how many of {}: {}.", payments(study).front().series, groups.size(),
+                                winners(chart.panels.front()));
   return chart;
 }
 
@@ -141,25 +141,89 @@ double prediction_error(const ResultRow& row) {
   return std::abs(row.number("real_cost") / estimate - 1);
 }
 
+/// Errors by recipe and by what was shot: matched rays are those that a measure assumes.
 Chart prediction_chart(const StudyResults& study) {
   Chart chart{.title = "How well trees predict their cost"};
   if (!any_measured(study.rows, prediction_error)) return chart;
+  const auto tests = [](const ResultRow& row) {
+    const std::string kind = row.kind.empty() ? "all tests" : row.kind + " areas";
+    return kind + (row.text("ray_set").empty() ? "" : ", " + std::string(row.text("ray_set")) + " rays");
+  };
+  if (any_measured(study.rows, column_value("pruned_cost"))) {
+    ChartPanel paid{.title = "What users pay: pruned cost as a share of the predicted cost",
+                    .kind = ChartKind::kRanking,
+                    .y = {"mean of pruned cost / predicted cost"},
+                    .reference = 1};
+    paid.groups = recipes_of(study);
+    paid.series = coloured(distinct(study.rows, tests));
+    paid.measured = group_means(
+        study.rows, [](const ResultRow& row) { return row.recipe; }, tests,
+        [](const ResultRow& row) {
+          const double own = row.number("estimated_cost");
+          return row.number("pruned_cost") / (std::isnan(own) ? row.number("estimated_pah") : own);
+        });
+    chart.panels.push_back(std::move(paid));
+  }
   ChartPanel panel{.title = "Error of the prediction against the full-traversal cost",
                    .kind = ChartKind::kRanking,
                    .y = {"mean of |real - predicted| / predicted"}};
   panel.groups = recipes_of(study);
-  const auto kind = [](const ResultRow& row) { return row.kind.empty() ? "all tests" : row.kind + " areas"; };
-  const std::vector<std::string> kinds = distinct(study.rows, kind);
-  panel.series = coloured(kinds);
+  panel.series = coloured(distinct(study.rows, tests));
   panel.measured = group_means(
-      study.rows, [](const ResultRow& row) { return row.recipe; }, kind, prediction_error);
+      study.rows, [](const ResultRow& row) { return row.recipe; }, tests, prediction_error);
   std::string text;
-  for (const std::string& name : kinds) {
-    const std::vector<ResultRow> rows = filtered(study.rows, [&](const ResultRow& row) { return kind(row) == name; });
-    text += fmt::format("{}{} for {}", text.empty() ? "" : ", ", percent(mean_of(rows, prediction_error)), name);
+  for (const ChartSeries& series : panel.series) {
+    const std::vector<ResultRow> rows = filtered(
+        study.rows, [&](const ResultRow& row) { return tests(row) == series.name && row.recipe.starts_with("PAH"); });
+    if (any_measured(rows, prediction_error))
+      text +=
+          fmt::format("{}{} for {}", text.empty() ? "" : ", ", percent(mean_of(rows, prediction_error)), series.name);
   }
-  chart.finding = "Mean error of the prediction over all recipes: " + text +
-                  "; the paper gives 2 % for planes and 12 % for points.";
+  chart.finding = text.empty()
+                      ? "No recipe uses PAH."
+                      : "Trees of PAH mispredict by " + text + "; the paper gives 2 % for planes and 12 % for points.";
+  chart.panels.push_back(std::move(panel));
+  return chart;
+}
+
+/// What users pay with the fallback into the global tree, against using that alone.
+Chart fallback_chart(const StudyResults& study) {
+  Chart chart{.title = "Local trees with fallback against the global tree alone"};
+  const auto ratio = [](const char* column, const char* other) -> RowValue {
+    return [=](const ResultRow& row) { return row.number(column) / row.number(other); };
+  };
+  std::vector<Payment> paid{
+      {"pruned cost", "#d9480f", ratio("pruned_cost_with_fallback", "global_pruned_cost")},
+      {"full-traversal cost (the paper's)", "#868e96", ratio("cost_with_fallback", "global_cost")}};
+  std::erase_if(paid, [&](const Payment& payment) { return !any_measured(study.rows, payment.value); });
+  if (paid.empty()) return chart;
+  ChartPanel panel{.title = "Paid per ray, as a multiple of the global tree's cost",
+                   .kind = ChartKind::kRanking,
+                   .y = {"mean over tests"},
+                   .groups = recipes_of(study),
+                   .reference = 1};
+  for (const Payment& payment : paid) {
+    panel.series.push_back({payment.series, payment.colour});
+    for (ChartPoint& point : group_means(
+             study.rows, [](const ResultRow& row) { return row.recipe; },
+             [&](const ResultRow&) { return std::string(payment.series); }, payment.value))
+      panel.measured.push_back(std::move(point));
+  }
+  std::string text;
+  size_t best = 0, tests = 0;
+  for (const std::string& recipe : panel.groups) {
+    const std::vector<ResultRow> rows = rows_of_recipe(study.rows, recipe);
+    const auto gain = [&](const ResultRow& row) { return paid.front().value(row) < 1; };
+    const auto count = static_cast<size_t>(std::count_if(rows.begin(), rows.end(), gain));
+    if (!text.empty() && count * tests <= best * rows.size()) continue;
+    text = recipe;
+    best = count;
+    tests = rows.size();
+  }
+  chart.finding = fmt::format(
+      "By {} a local tree with fallback costs less than the global tree alone in {} of {} tests with {}, the recipe "
+      "with the largest share.",
+      paid.front().series, best, tests, text);
   chart.panels.push_back(std::move(panel));
   return chart;
 }
@@ -192,18 +256,19 @@ Chart build_chart(const StudyResults& study, const std::string& baseline) {
 
 }  // namespace
 
-std::vector<Chart> recipe_charts(const StudyResults& study) {
-  if (recipes_of(study).size() < 2) return {};
+std::vector<Chart> recipe_charts(const StudyResults& all) {
+  if (recipes_of(all).size() < 2) return {};
+  const StudyResults study{all.name, all.id, main_rays(all.rows)};
   const std::string baseline = baseline_recipe(study);
-  std::vector<Chart> charts{ranking_chart(study, baseline)};
-  if (const std::vector<std::string> groups = group_labels(study.rows);
-      groups.size() > 1 && groups.size() < kMostScenes)
-    charts.push_back(group_chart(study, baseline, "By kind of area and direction of rays", group_label, groups));
+  std::vector<Chart> charts{ranking_chart(study, baseline), fallback_chart(study)};
   const auto scene = [](const ResultRow& row) { return row.scene; };
-  if (const std::vector<std::string> scenes = distinct(study.rows, scene);
-      scenes.size() > 1 && scenes.size() < kMostScenes)
-    charts.push_back(group_chart(study, baseline, "By scene", scene, scenes));
-  charts.push_back(prediction_chart(study));
+  const auto add = [&](const char* title, const RowText& group, const std::vector<std::string>& groups) {
+    if (groups.size() > 1 && groups.size() < kMostGroups)
+      charts.push_back(group_chart(study, baseline, title, group, groups));
+  };
+  add("By kind of area and direction of rays", group_label, group_labels(study.rows));
+  add("By scene", scene, distinct(study.rows, scene));
+  charts.push_back(prediction_chart(all));
   charts.push_back(build_chart(study, baseline));
   std::erase_if(charts, [](const Chart& chart) { return chart.panels.empty(); });
   return charts;

@@ -17,12 +17,13 @@ constexpr const char* kColumnsHint =
     "results files of raygrain study and compare.csv have a recipe and metrics per row";
 
 /// Other names of columns.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kSynonyms{{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kSynonyms{{
     {"combo", kRecipeColumn},
     {"name", kRecipeColumn},
     {"real_cost_local", "real_cost"},
     {"real_cost_with_fallback", "cost_with_fallback"},
     {"overlap", "overlap100_culled"},
+    {"estimated_own", "estimated_cost"},
     {"test", "scene"},
 }};
 

@@ -11,9 +11,12 @@ namespace raygrain {
 
 namespace {
 
-/// Columns of studies that no single tree has.
-constexpr std::array<std::string_view, 6> kOwnMetrics{"estimated_pah", "estimated_sah",    "overlap100_culled",
-                                                      "areas",         "top_level_levels", "foreign_share"};
+/// Numbers of studies that no single tree has: these, and what ends like a cost, ratio, time or size.
+constexpr std::array<std::string_view, 8> kOwnMetrics{"estimated_pah",   "estimated_sah", "areas",
+                                                      "foreign_share",   "areas_tested",  "local_searches",
+                                                      "global_searches", "continued"};
+constexpr std::array<std::string_view, 7> kOwnEndings{"_seconds", "_bytes",  "_cost",      "_ratio",
+                                                      "_share",   "_culled", "_per_global"};
 /// What makes two rows the same test of different trees.
 constexpr std::array<std::string_view, 8> kTestColumns{"scene",   "kind",  "variant", "area",
                                                        "ray_set", "areas", "seed",    "repeat"};
@@ -29,7 +32,8 @@ std::string test_key(const ResultRow& row) {
 bool is_metric(std::string_view column) {
   const auto named = [&](const Field& f) { return f.name == column; };
   return std::any_of(fields().begin(), fields().end(), named) ||
-         std::find(kOwnMetrics.begin(), kOwnMetrics.end(), column) != kOwnMetrics.end();
+         std::find(kOwnMetrics.begin(), kOwnMetrics.end(), column) != kOwnMetrics.end() ||
+         std::any_of(kOwnEndings.begin(), kOwnEndings.end(), [&](std::string_view e) { return column.ends_with(e); });
 }
 
 bool is_number(std::string_view text) {

@@ -70,16 +70,26 @@ std::vector<Chart> paper_charts(const StudyResults& study) {
   return charts;
 }
 
+std::vector<Chart> charts_of(const StudyResults& study) {
+  std::vector<Chart> charts;
+  for (const auto make : {area_charts, memory_charts, stress_charts}) append(charts, make(study));
+  if (!charts.empty()) return charts;  // rows of these studies are no trees
+
+  if (study.name != "corrected" && has_paper_tests(study)) append(charts, paper_charts({study.name, study.id, main_rays(study.rows)}));
+  if (Chart tuning = tuning_table(study); tuning.verdict != Verdict::kMissing) {
+    charts.push_back(std::move(tuning));
+    append(charts, parameter_charts(study));
+  } else {
+    append(charts, scaling_charts(study));
+    append(charts, recipe_charts(study));
+  }
+  return charts;
+}
+
 ChartSection section_of(const StudyResults& study) {
   const KnownStudy* known = known_study(study.name);
-  ChartSection section{
-      study.id, known ? std::string(known->title) : study.name, known ? std::string(known->text) : "", {}};
-  if (study.name != "corrected" && has_paper_tests(study)) append(section.charts, paper_charts(study));
-  if (Chart tuning = tuning_table(study); tuning.verdict != Verdict::kMissing)
-    section.charts.push_back(std::move(tuning));
-  std::vector<Chart> numbers = number_charts(study);
-  if (numbers.empty()) append(section.charts, recipe_charts(study));
-  append(section.charts, std::move(numbers));
+  ChartSection section{study.id, known ? std::string(known->title) : study.name, known ? std::string(known->text) : "",
+                       charts_of(study)};
   std::erase_if(section.charts, [](const Chart& chart) { return chart.panels.empty() && chart.table.rows.empty(); });
   for (Chart& chart : section.charts)
     chart.id = study.id + "-" + id_of(chart.label.empty() ? chart.title : chart.label);
