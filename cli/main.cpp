@@ -32,6 +32,7 @@ struct Command {
 
 constexpr Command kCommands[] = {
     {"compare", "Compare trees of several recipes for the same areas and rays: the main job", declare_compare},
+    {"study", "Run the paper's evaluation, or a grid of experiments of one's own", declare_study},
     {"build", "Build one tree and write it as JSON", declare_build},
     {"analyze", "Print all metrics of one tree", declare_analyze},
     {"trace", "Find the nearest hits of rays from a file", declare_trace},

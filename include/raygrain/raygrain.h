@@ -24,6 +24,7 @@
 #include "raygrain/registry.h"
 #include "raygrain/report.h"
 #include "raygrain/scene.h"
+#include "raygrain/study.h"
 #include "raygrain/study_report.h"
 #include "raygrain/top_level.h"
 #include "raygrain/trace.h"
