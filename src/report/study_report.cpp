@@ -123,7 +123,8 @@ StudyReport make_study_report(std::span<const ResultTable> tables) {
     add_facts(report, study);
     report.sections.push_back(section_of(study));
   }
-  report.sections.front().charts.push_back(parameter_table());
+  std::vector<Chart>& first = report.sections.front().charts;
+  first.insert(first.begin(), parameter_table());
   return report;
 }
 

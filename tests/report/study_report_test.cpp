@@ -177,8 +177,8 @@ TEST(StudyReport, StudiesOfOtherThingsHaveTheirOwnCharts) {
 
 TEST(StudyReport, JsonIsThereForEveryChart) {
   const auto json = nlohmann::json::parse(study_report_json(report_of(paper_results({"\xff</script>"}))));
-  EXPECT_EQ(json["sections"][0]["charts"][0]["label"], "Figure 14");
-  EXPECT_TRUE(json["sections"][0]["charts"][1]["panels"][0]["reference"].is_null());
+  EXPECT_EQ(json["sections"][0]["charts"][0]["label"], "Table 1");
+  EXPECT_TRUE(json["sections"][0]["charts"][2]["panels"][0]["reference"].is_null());
 }
 
 TEST(InteractivePage, IsFilledOnceAndSafely) {
