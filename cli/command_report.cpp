@@ -84,7 +84,7 @@ std::string summary(const StudyReport& report) {
   for (const ChartSection& section : report.sections) {
     text += section.title + "\n";
     for (const Chart& chart : section.charts)
-      text += fmt::format("  {}{}[{}] {}\n", chart.label, chart.label.empty() ? "" : " ", name(chart.verdict),
+      text += fmt::format("  {} [{}] {}\n", chart.label.empty() ? chart.title : chart.label, name(chart.verdict),
                           chart.finding);
   }
   return text;

@@ -27,6 +27,17 @@ std::string joined(std::string_view a, std::string_view b) {
   return std::string(a) + (a.empty() || b.empty() ? "" : " ") + std::string(b);
 }
 
+/// Those of `first` that are among `found`, then the others in their order.
+template <class Names>
+std::vector<std::string> in_order(const Names& first, std::vector<std::string> found) {
+  std::vector<std::string> names;
+  for (const std::string_view name : first)
+    if (std::erase(found, name) > 0) names.emplace_back(name);
+  std::erase(found, std::string{});
+  names.insert(names.end(), found.begin(), found.end());
+  return names;
+}
+
 bool is_paper_recipe(std::string_view recipe) {
   return published_cost(recipe) != nullptr;
 }
@@ -62,6 +73,16 @@ std::vector<std::string> group_labels(std::span<const ResultRow> rows) {
   for (const std::string& label : found)
     if (std::find(labels.begin(), labels.end(), label) == labels.end()) labels.push_back(label);
   return labels;
+}
+
+std::vector<std::string> recipe_names(std::span<const ResultRow> rows) {
+  std::array<std::string_view, kRecipeColours.size()> known;
+  std::transform(kRecipeColours.begin(), kRecipeColours.end(), known.begin(), [](const auto& c) { return c.first; });
+  return in_order(known, distinct(rows, [](const ResultRow& row) { return row.recipe; }));
+}
+
+std::vector<std::string> scene_names(std::span<const ResultRow> rows) {
+  return in_order(kPaperScenes, distinct(rows, [](const ResultRow& row) { return row.scene; }));
 }
 
 std::vector<std::string> own_recipes(const StudyResults& study) {

@@ -47,6 +47,10 @@ std::string group_label(const ResultRow& row);
 /// Groups that occur, the paper's first, in its order.
 std::vector<std::string> group_labels(std::span<const ResultRow> rows);
 
+/// Recipes and scenes that occur, the paper's first, in its order.
+std::vector<std::string> recipe_names(std::span<const ResultRow> rows);
+std::vector<std::string> scene_names(std::span<const ResultRow> rows);
+
 /// A chart over a number: means of `value` over the rows of each series at each x.
 ChartPanel line_panel(std::span<const ResultRow> rows, const std::string& title, const RowText& series,
                       const std::pair<ChartAxis, RowValue>& x, const std::pair<ChartAxis, RowValue>& y);

@@ -40,8 +40,9 @@ Chart measured_chart(const StudyResults& study) {
   if (!any_measured(rows, total)) return chart;
 
   ChartPanel multiples{.title = "What users pay: memory as a multiple of the global tree's",
-                       .y = {"total / global tree, mean over areas"},
-                       .groups = distinct(rows, scene_of),
+                       .kind = ChartKind::kDots,
+                       .y = {"total / global tree, mean over areas", true},
+                       .groups = scene_names(rows),
                        .series = {{"measured", "#d9480f"}, {"as the paper counts", "#868e96"}},
                        .reference = 1};
   multiples.measured = group_means(
@@ -54,7 +55,7 @@ Chart measured_chart(const StudyResults& study) {
   ChartPanel parts{.title = "Of which parts it consists",
                    .kind = ChartKind::kDots,
                    .y = {"bytes, mean over areas", true},
-                   .groups = distinct(rows, scene_of)};
+                   .groups = scene_names(rows)};
   for (const Part& part : kParts) {
     parts.series.push_back({part.series, part.colour});
     for (ChartPoint& point : group_means(
@@ -63,9 +64,9 @@ Chart measured_chart(const StudyResults& study) {
   }
   chart.panels.push_back(std::move(parts));
   chart.finding = fmt::format(
-      "With one influence area users keep {} times the memory of the global tree, mean of {} areas; as the paper "
+      "With one influence area users keep {} times the memory of the global tree, median of {} areas; as the paper "
       "counts it is {} times.",
-      short_number(mean_of(rows, total)), rows.size(), short_number(mean_of(rows, counted)));
+      short_number(median_of(rows, total)), rows.size(), short_number(median_of(rows, counted)));
   return chart;
 }
 

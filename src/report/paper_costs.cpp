@@ -73,16 +73,16 @@ struct Agreement {
 };
 
 /// Group by group: is the recipe cheaper than the baseline, here and in the paper?
-Agreement compare_groups(const ChartPanel& panel, const CostFigure& figure) {
+Agreement compare_groups(const ChartPanel& panel, const CostFigure& figure, PaperValues PublishedCost::*values) {
   Agreement result;
   for (size_t i = 0; i < kPaperGroups.size(); ++i) {
     const std::string_view group = kPaperGroups[i].label;
     const double ratio =
         point_value(panel.measured, figure.recipe, group) / point_value(panel.measured, kBaseline, group);
     if (std::isnan(ratio)) continue;
-    double published = published_cost(figure.recipe)->eight_scenes[i];
-    if (std::isnan(published)) published = published_cost(kMislabelledRecipe)->eight_scenes[i];
-    const bool published_cheaper = published < published_cost(kBaseline)->eight_scenes[i];
+    double published = (published_cost(figure.recipe)->*values)[i];
+    if (std::isnan(published)) published = (published_cost(kMislabelledRecipe)->*values)[i];
+    const bool published_cheaper = published < (published_cost(kBaseline)->*values)[i];
     ++result.groups;
     result.cheaper += ratio < 1;
     result.published_cheaper += published_cheaper;
@@ -102,15 +102,15 @@ std::vector<std::string> figure_recipes(const StudyResults& study, const CostFig
   return recipes;
 }
 
-std::string finding(const StudyResults& study, const CostFigure& figure, const Agreement& agreement) {
+std::string finding(const StudyResults& study, const CostFigure& figure, const Agreement& agreement, bool six) {
   const std::string users = user_sentence(study, std::string(figure.recipe), std::string(kBaseline));
   return fmt::format(
-      "{}{}y the paper's full-traversal cost {} is cheaper than {} in {} of {} groups, where the paper found {}: the "
+      "{}{}y the paper's full-traversal cost{} {} is cheaper than {} in {} of {} groups, where the paper found {}: the "
       "two "
       "agree on {} of {}.",
       users.empty() ? "" : "With " + std::string(figure.recipe) + " " + users + "; ", users.empty() ? "B" : "b",
-      figure.recipe, kBaseline, agreement.cheaper, agreement.groups, agreement.published_cheaper, agreement.agreeing,
-      agreement.groups);
+      six ? ", over the six scenes with the authors' own models," : "", figure.recipe, kBaseline, agreement.cheaper,
+      agreement.groups, agreement.published_cheaper, agreement.agreeing, agreement.groups);
 }
 
 void add_notes(Chart& chart, const StudyResults& study, const CostFigure& figure) {
@@ -124,33 +124,39 @@ void add_notes(Chart& chart, const StudyResults& study, const CostFigure& figure
         fmt::format("{} more recipes of this study are in the chart of all recipes.", own - kMostOwnRecipes));
 }
 
+/// Means over a set of scenes, with the published ones of the same set.
+ChartPanel cost_panel(std::span<const ResultRow> rows, const std::vector<std::string>& recipes,
+                      const std::string& title, PaperValues PublishedCost::*values, std::string_view label) {
+  ChartPanel panel =
+      group_bars(rows, recipes, title, "mean real cost per ray, full traversal", column_value("real_cost"));
+  add_published(panel, values, label);
+  return panel;
+}
+
 Chart cost_figure(const StudyResults& study, const CostFigure& figure) {
   Chart chart{.label = std::string(figure.label), .title = std::string(figure.title)};
   const std::vector<std::string> recipes = figure_recipes(study, figure);
   chart.panels = user_bars(study.rows, recipes);
-  const RowValue cost = column_value("real_cost");
-  ChartPanel all = group_bars(study.rows, recipes, "As in the paper: full-traversal cost",
-                              "mean real cost per ray, full traversal", cost);
-  const Agreement agreement = compare_groups(all, figure);
-  chart.verdict = verdict_of(agreement.agreeing, agreement.groups);
-  chart.finding = finding(study, figure, agreement);
-  add_published(all, &PublishedCost::eight_scenes, "printed, mean of 8 scenes");
-
   const size_t scenes = scene_count(study.rows, kPaperScenes.size());
+  const bool comparable = scene_count(study.rows, kOwnModels) == kOwnModels;
+  chart.panels.push_back(cost_panel(study.rows, recipes, "As in the paper: full-traversal cost",
+                                    &PublishedCost::eight_scenes, "printed, mean of 8 scenes"));
   if (scenes == kPaperScenes.size())
-    chart.notes.push_back(distance_note(all, "the eight scenes, two of which are substitutes"));
+    chart.notes.push_back(distance_note(chart.panels.back(), "the eight scenes, two of which are substitutes"));
   else
     chart.notes.push_back(
         fmt::format("{} of the paper's 8 scenes were measured; the published means are over all 8.", scenes));
-  chart.panels.push_back(std::move(all));
-  if (scene_count(study.rows, kOwnModels) == kOwnModels) {
-    ChartPanel six = group_bars(filtered(study.rows, is_own_model), recipes,
-                                "The same over the six scenes whose models are the authors' own",
-                                "mean real cost per ray, full traversal", cost);
-    add_published(six, &PublishedCost::six_scenes, "authors' raw results, mean of 6 scenes");
-    chart.notes.push_back(distance_note(six, "the six scenes whose models are the authors' own"));
-    chart.panels.push_back(std::move(six));
+  if (comparable) {
+    chart.panels.push_back(cost_panel(filtered(study.rows, is_own_model), recipes,
+                                      "The same over the six scenes whose models are the authors' own",
+                                      &PublishedCost::six_scenes, "authors' raw results, mean of 6 scenes"));
+    chart.notes.push_back(distance_note(chart.panels.back(), "the six scenes whose models are the authors' own"));
   }
+  // Only the same models can be held against the paper; without them, what there is.
+  const Agreement agreement = compare_groups(chart.panels.back(), figure,
+                                             comparable ? &PublishedCost::six_scenes : &PublishedCost::eight_scenes);
+  chart.verdict = verdict_of(agreement.agreeing, agreement.groups);
+  chart.finding = finding(study, figure, agreement, comparable);
   std::erase(chart.notes, std::string{});
   add_notes(chart, study, figure);
   return chart;

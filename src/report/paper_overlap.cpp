@@ -31,7 +31,7 @@ ChartPanel scatter(const StudyResults& study, const std::string& title, const st
     if (std::isnan(x) || !(y > 0)) continue;
     panel.measured.push_back({.series = row.recipe, .x = x, .y = y, .label = row.scene + ", " + group_label(row)});
   }
-  panel.series = coloured(distinct(study.rows, [](const ResultRow& row) { return row.recipe; }));
+  panel.series = coloured(recipe_names(study.rows));
   return panel;
 }
 

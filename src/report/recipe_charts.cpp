@@ -30,9 +30,7 @@ std::vector<Payment> payments(const StudyResults& study) {
 }
 
 std::vector<std::string> recipes_of(const StudyResults& study) {
-  std::vector<std::string> recipes = distinct(study.rows, [](const ResultRow& row) { return row.recipe; });
-  std::erase(recipes, std::string{});
-  return recipes;
+  return recipe_names(study.rows);
 }
 
 struct Ranked {
@@ -88,7 +86,7 @@ ChartPanel ratio_dots(const StudyResults& study, const std::string& baseline, co
                       const RowText& group, std::vector<std::string> groups) {
   ChartPanel panel{.title = std::string(payment.series) + " as a multiple of " + baseline + "'s",
                    .kind = ChartKind::kDots,
-                   .y = {"geometric mean over tests of recipe / " + baseline},
+                   .y = {"geometric mean over tests of recipe / " + baseline, true},
                    .groups = std::move(groups),
                    .series = coloured(recipes_of(study)),
                    .reference = 1};
@@ -261,13 +259,13 @@ std::vector<Chart> recipe_charts(const StudyResults& all) {
   const StudyResults study{all.name, all.id, main_rays(all.rows)};
   const std::string baseline = baseline_recipe(study);
   std::vector<Chart> charts{ranking_chart(study, baseline), fallback_chart(study)};
-  const auto scene = [](const ResultRow& row) { return row.scene; };
   const auto add = [&](const char* title, const RowText& group, const std::vector<std::string>& groups) {
     if (groups.size() > 1 && groups.size() < kMostGroups)
       charts.push_back(group_chart(study, baseline, title, group, groups));
   };
   add("By kind of area and direction of rays", group_label, group_labels(study.rows));
-  add("By scene", scene, distinct(study.rows, scene));
+  add(
+      "By scene", [](const ResultRow& row) { return row.scene; }, scene_names(study.rows));
   charts.push_back(prediction_chart(all));
   charts.push_back(build_chart(study, baseline));
   std::erase_if(charts, [](const Chart& chart) { return chart.panels.empty(); });

@@ -65,7 +65,7 @@ Chart break_even_chart(const StudyResults& study) {
     ChartPanel panel{.title = "What users need for a gain: hit ratio and break-even, " + recipe,
                      .kind = ChartKind::kDots,
                      .y = {"share of rays answered by local trees"},
-                     .groups = distinct(own, [](const ResultRow& row) { return row.scene; }),
+                     .groups = scene_names(own),
                      .series = {{"hit ratio", "#2f9e44"}, {"break-even hit ratio", "#d9480f"}}};
     for (const ResultRow& row : own) {
       panel.measured.push_back({.series = "hit ratio", .group = row.scene, .y = hits(row)});

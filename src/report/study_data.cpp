@@ -128,6 +128,16 @@ double mean_of(std::span<const ResultRow> rows, const RowValue& value) {
   return count == 0 ? kNotMeasured : sum / static_cast<double>(count);
 }
 
+double median_of(std::span<const ResultRow> rows, const RowValue& value) {
+  std::vector<double> values;
+  for (const ResultRow& row : rows)
+    if (const double v = value(row); !std::isnan(v)) values.push_back(v);
+  if (values.empty()) return kNotMeasured;
+  const auto middle = values.begin() + static_cast<ptrdiff_t>((values.size() - 1) / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 PairedRatio paired_ratio(std::span<const ResultRow> rows, std::string_view recipe, std::string_view baseline,
                          const RowValue& value) {
   std::map<std::string, double> base;

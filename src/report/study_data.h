@@ -47,6 +47,8 @@ std::vector<ResultRow> rows_of_recipe(std::span<const ResultRow> rows, std::stri
 std::vector<ChartPoint> group_means(std::span<const ResultRow> rows, const RowText& group, const RowText& series,
                                     const RowValue& value);
 double mean_of(std::span<const ResultRow> rows, const RowValue& value);
+/// The lower one of two middle values.
+double median_of(std::span<const ResultRow> rows, const RowValue& value);
 
 /// Tests that two recipes share (all names but the recipe's are equal), compared test by test.
 struct PairedRatio {

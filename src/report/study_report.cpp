@@ -75,7 +75,8 @@ std::vector<Chart> charts_of(const StudyResults& study) {
   for (const auto make : {area_charts, memory_charts, stress_charts}) append(charts, make(study));
   if (!charts.empty()) return charts;  // rows of these studies are no trees
 
-  if (study.name != "corrected" && has_paper_tests(study)) append(charts, paper_charts({study.name, study.id, main_rays(study.rows)}));
+  if (study.name != "corrected" && has_paper_tests(study))
+    append(charts, paper_charts({study.name, study.id, main_rays(study.rows)}));
   if (Chart tuning = tuning_table(study); tuning.verdict != Verdict::kMissing) {
     charts.push_back(std::move(tuning));
     append(charts, parameter_charts(study));
