@@ -36,6 +36,7 @@ constexpr Command kCommands[] = {
     {"build", "Build one tree and write it as JSON", declare_build},
     {"analyze", "Print all metrics of one tree", declare_analyze},
     {"trace", "Find the nearest hits of rays from a file", declare_trace},
+    {"report", "Draw the results of studies as a page of charts", declare_report},
     {"recipes", "List the measures, orientations and builders that recipes are made of", declare_recipes},
 };
 constexpr Command kSceneCommands[] = {
