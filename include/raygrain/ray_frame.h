@@ -67,6 +67,7 @@ Bounds frame_bounds(const RayFrame& frame, const Bounds& box);
 struct FrameSegment {
   double x0 = 0, y0 = 0, z0 = 0;  // z0 is the middle of z_lo and z_hi
   double slope_x = 0, slope_y = 0, error = 0;
+  double slope_error = 0;  // beyond z_lo and z_hi the error grows by this times the distance
   double z_lo = 0, z_hi = 0, sure_lo = 0, sure_hi = 0;
   bool ascending = true;  // z grows with t
   /// Hits whose float t are equal, or in the other order than their depths, differ in depth by at most tie(z), z being

@@ -80,6 +80,7 @@ void set_parallel(const LocalRay& local, double inverse, double steepness, Frame
   const double lean = 1 + std::max(std::abs(s.slope_x), std::abs(s.slope_y));
   const double reach = std::abs(s.z0 - q.z) + (s.z_hi - s.z_lo);
   s.error = 16 * kRoundoff * lean * (local.origin_size + 2 * steepness * reach);
+  s.slope_error = 16 * kRoundoff * lean * steepness;
   s.tie_constant = 0x1p-22 * std::abs(q.z) + 0x1p-148 * std::abs(m.z);
   s.tie_linear = 0x1p-22;
 }
@@ -94,6 +95,7 @@ void set_projective(const LocalRay& local, double inverse, double steepness, Fra
   s.y0 = y + s.z0 * s.slope_y;
   const double lean = 1 + std::max(std::abs(x), std::abs(y)), depth = std::max(-s.z_lo, -s.z_hi);
   s.error = 32 * kRoundoff * steepness * lean * (1 + depth * local.origin_size);
+  s.slope_error = 32 * kRoundoff * steepness * lean * local.origin_size;
   s.tie_linear = 0x1p-21;
   s.tie_square = 0x1p-21 * std::abs(q.z) + 0x1p-147 * std::abs(m.z);
 }
