@@ -36,6 +36,10 @@ void set_sizes(FrameMemory& tree, const Bounds& bounds) {
     return z + sign * margin * (tree.frame.is_projective() ? std::abs(z) : depth);
   };
   tree.depths = {float_below(out(bounds.lo.z, -1)), float_above(out(bounds.hi.z, 1))};
+  const double lo = tree.depths[0], hi = tree.depths[1];
+  tree.middle = 0.5 * (lo + hi);
+  tree.half = 0.5 * (hi - lo) * (1 + 0x1p-40);
+  tree.depth = std::max(std::abs(lo), std::abs(hi));
 }
 
 class FrameWriter {
@@ -75,7 +79,7 @@ class FrameWriter {
       field(FrameLeaf::kQ, lane) = static_cast<float>(t.q);
       field(FrameLeaf::kR, lane) = static_cast<float>(t.r);
       field(FrameLeaf::kError, lane) = float_above(t.z_error * (1 + 0x1p-20));
-      field(FrameLeaf::kId, lane) = std::bit_cast<float>(ids_[lane]);
+      field(FrameLeaf::kId, lane) = FrameLeaf::stored(ids_[lane]);
       most_error = std::max(most_error, t.z_error);
     }
     const double lo = leaf.lo.z, hi = leaf.hi.z, middle = 0.5 * (lo + hi);
