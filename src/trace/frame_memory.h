@@ -24,7 +24,11 @@ inline size_t triangles_of(FrameRef ref) {
   return ref & 15;
 }
 
-/// Boxes in the frame, rounded outward; those of missing children are empty (lo = infinity, hi = -infinity).
+/// A visit takes one entry off and puts at most eight on; whole vectors are written.
+inline constexpr size_t kFrameStackSize = kWideStackSize + kWidth;
+
+/// Boxes in the frame, rounded outward, farther ones first (by the least z); those of missing children are empty (lo =
+/// infinity, hi = -infinity).
 struct alignas(64) FrameNode {
   float lower[3][kWidth], upper[3][kWidth];
   FrameRef child[kWidth];
@@ -56,7 +60,7 @@ struct FrameLeaf {
 
 struct FrameMemory {
   RayFrame frame;
-  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const TriangleCorners> corners;
   LineMemory memory;
   Bounds bounds;
   std::array<float, 2> depths{};           // a little more than the bounds': what rays are followed through
@@ -94,7 +98,7 @@ struct FrameQuery {
 FrameUse prepare(const FrameMemory& tree, const Ray& ray, FrameQuery& query);
 
 /// The tree in memory.
-FrameMemory write_frame_tree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleMesh> mesh,
+FrameMemory write_frame_tree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleCorners> corners,
                              const WideOptions& options);
 
 }  // namespace raygrain

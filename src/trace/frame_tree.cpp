@@ -37,14 +37,20 @@ Ray shortened(const Ray& ray, float from, float to) {
 
 }  // namespace
 
+TriangleCorners::TriangleCorners(const TriangleMesh& mesh) {
+  corners_.reserve(mesh.triangle_count());
+  for (uint32_t i = 0; i < mesh.triangle_count(); ++i)
+    corners_.push_back({mesh.vertex(i, 0), mesh.vertex(i, 1), mesh.vertex(i, 2)});
+}
+
 FrameTree::FrameTree() : data_(std::make_shared<const Data>()) {}
 
-FrameTree::FrameTree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleMesh> mesh,
+FrameTree::FrameTree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleCorners> corners,
                      const WideOptions& options) {
   const Isa isa = options.isa ? *options.isa : default_isa();
   const FrameKernels& table = kernels_of(isa);
-  if (mesh == nullptr) throw Error(ErrorCode::kUsage, "FrameTree", "has no mesh");
-  data_ = std::make_shared<const Data>(Data{write_frame_tree(frame, tree, std::move(mesh), options), isa, &table});
+  if (corners == nullptr) throw Error(ErrorCode::kUsage, "FrameTree", "has no corners");
+  data_ = std::make_shared<const Data>(Data{write_frame_tree(frame, tree, std::move(corners), options), isa, &table});
 }
 
 FrameUse FrameTree::use_of(const Ray& ray) const {
