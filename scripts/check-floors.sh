@@ -11,7 +11,7 @@ cd "${1:-$(dirname "$0")/..}"
     # public header -> module
     h = "error base vec geometry bounds geometry ray geometry mesh geometry frame geometry region geometry area geometry"
     h = h " triangle geometry measure build orientation build bvh build build build rays rays scene io io io"
-    h = h " heuristics heuristic registry heuristic trace trace wide trace refine build top_level accel accelerator accel"
+    h = h " heuristics heuristic registry heuristic trace trace wide trace coverage trace refine build top_level accel accelerator accel"
     h = h " fields analyze analyze analyze compare study report report raygrain cli"
     split(h, p, " ")
     for (i = 1; i in p; i += 2) owner[p[i]] = p[i + 1]
