@@ -37,7 +37,8 @@ Vec3 vertex(const TriangleMesh& mesh, Random& random) {
 Vec3 point_on(const TriangleMesh& mesh, Random& random) {
   const size_t t = random.below(mesh.triangle_count());
   const Vec3d a = to_double(mesh.vertex(t, 0)), b = to_double(mesh.vertex(t, 1)), c = to_double(mesh.vertex(t, 2));
-  const double u = random.below(3) == 0 ? 0 : random.uniform(), v = random.below(3) == 0 ? 0 : random.uniform() * (1 - u);
+  const double u = random.below(3) == 0 ? 0 : random.uniform(),
+               v = random.below(3) == 0 ? 0 : random.uniform() * (1 - u);
   return to_float(a + (b - a) * u + (c - a) * v);
 }
 
@@ -67,7 +68,8 @@ std::vector<Vec3> points_around(const TriangleMesh& mesh, Vec3 eye, size_t count
     const double factors[] = {1, 1, 1.0001, 0.9999, 1.5, 0.5, 0.01, 3};
     Vec3d q = to_double(eye) + away * factors[random.below(std::size(factors))];
     if (random.below(4) == 0) q = q + to_double(unit_vector(random)) * (size * 1e-6);
-    if (random.below(8) == 0) q.x = static_cast<double>(eye.x) + std::abs(q.z - static_cast<double>(eye.z));  // between two frusta
+    if (random.below(8) == 0)
+      q.x = static_cast<double>(eye.x) + std::abs(q.z - static_cast<double>(eye.z));  // between two frusta
     points.push_back(to_float(q));
   }
   return points;
@@ -118,11 +120,20 @@ std::vector<Vec3> light_directions(Random& random) {
   return {axis, any, {any.x, 1e-4f * any.y, any.z * 1e-7f}};
 }
 
+/// Scenes of up to 2^60: around greater ones there is no finite area.
+bool has_areas(const TriangleMesh& mesh) {
+  const Bounds box = mesh_bounds(mesh);
+  for (const Vec3 p : {box.lo, box.hi})
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(p[axis]) < 0x1p60f)) return false;
+  return true;
+}
+
 template <class Body>
 void for_families(uint64_t seeds, const Body& body) {
   for (uint64_t seed = 0; seed < test::seed_count(seeds); ++seed)
     for (const test::NamedMesh& family : test::mesh_families(seed)) {
-      if (family.mesh.triangles.empty()) continue;
+      if (family.mesh.triangles.empty() || !has_areas(family.mesh)) continue;
       SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
       body(std::make_shared<const TriangleMesh>(family.mesh), seed);
       if (testing::Test::HasFatalFailure()) return;
@@ -163,7 +174,7 @@ TEST(Coverage, AgreesWithTheOracleAlongADirection) {
   EXPECT_GT(any.answered, any.asked / 2);
   EXPECT_GT(any.hits, any.answered / 8);
   EXPECT_GT(nearest.answered, nearest.asked / 8);
-  EXPECT_GT(nearest.hits, nearest.answered / 2);
+  EXPECT_GT(nearest.hits, nearest.answered / 3);
 }
 
 TEST(Coverage, AgreesWithTheOracleAboutAPoint) {
@@ -204,7 +215,7 @@ TEST(Coverage, AgreesWithTheOracleAboutAPoint) {
   EXPECT_GT(any.answered, any.asked / 12);  // a sixth is in each frustum
   EXPECT_GT(any.hits, any.answered / 8);
   EXPECT_GT(nearest.answered, nearest.asked / 12);
-  EXPECT_GT(nearest.hits, nearest.answered / 2);
+  EXPECT_GT(nearest.hits, nearest.answered / 3);
 }
 
 }  // namespace
