@@ -52,6 +52,16 @@ class Coverage {
   /// answered then.
   bool is_useful() const;
 
+  /// 1 for rays of this direction against the light's (towards it), -1 for the light's own, 0 for others and for eyes.
+  int sense(Vec3 direction) const;
+  /// Is it about rays to and from this point?
+  bool has_eye(Vec3 point) const;
+
+  /// One ray: nothing if it is not this structure's to answer. Rays to a light have tmin = 0 and end at it, up to
+  /// rounding; rays against a direction end nowhere or beyond all triangles.
+  std::optional<bool> occluded(const Ray& ray) const;
+  std::optional<Hit> intersect(const Ray& ray) const;
+
   /// Answers what it can of the rays (origins[i], direction), tmin 0, tmax infinite, against the light's direction;
   /// appends the numbers of the others to `rest`, ascending. `subset` (ascending numbers; empty: all) chooses rays.
   /// 0 threads = all.

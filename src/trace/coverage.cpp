@@ -36,12 +36,50 @@ size_t bytes_of(const CoverageGrid& grid) {
 }
 
 /// +1 for directions against the light's, -1 for those along it, 0 for others.
-int sense(const CoverageGrid& grid, Vec3 direction) {
+int sense_of(const CoverageGrid& grid, Vec3 direction) {
   const Vec3d v = to_double(direction);
   const Vec3d q{dot(grid.map.rows[0], v), dot(grid.map.rows[1], v), dot(grid.map.rows[2], v)};
   const double along = std::abs(q.z);
   if (!(along >= 0x1p-60 && along <= 0x1p60) || std::max(std::abs(q.x), std::abs(q.y)) > kMostSlope * along) return 0;
   return q.z > 0 ? 1 : -1;
+}
+
+Vec3d turn(const ColumnMap& map, Vec3d v) {
+  return {dot(map.rows[0], v), dot(map.rows[1], v), dot(map.rows[2], v)};
+}
+
+/// Parallel rays, in double precision: better than the errors that the grid allows for.
+bool column_along(const CoverageGrid& grid, const Ray& ray, int wanted, SingleColumn& column) {
+  if (sense_of(grid, ray.direction) != wanted) return false;
+  const Vec3d q = grid.map.turned(ray.origin);
+  const double along = turn(grid.map, to_double(ray.direction)).z;
+  column = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z),
+            static_cast<float>(q.z + along * static_cast<double>(ray.tmax))};
+  return column.s >= grid.s_lo && column.s <= grid.s_hi;
+}
+
+/// A ray whose line passes the eye and that ends there, up to rounding.
+bool column_to_eye(const CoverageGrid& grid, const Ray& ray, SingleColumn& column) {
+  const Vec3d to_eye = to_double(grid.map.center) - to_double(ray.origin), direction = to_double(ray.direction);
+  const double distance = dot(to_eye, to_eye), size = dot(direction, direction), along = dot(to_eye, direction);
+  if (!(size >= 0x1p-120 && size <= 0x1p120 && distance <= 0x1p120 && along > 0)) return false;
+  const Vec3d beside = cross(to_eye, direction);
+  if (!(dot(beside, beside) <= 0.99 * kMostOffset * kMostOffset * distance * size)) return false;
+  const double end = static_cast<double>(ray.tmax) * size;  // against `along`, where the ray passes the eye
+  if (!(end >= along * (1 - kMostOffset) && end <= along * (1 + kMostOffset))) return false;
+  const Vec3d q = turn(grid.map, -to_eye);
+  if (!(q.z > 0)) return false;
+  const double s = 1 / q.z;
+  column = {static_cast<float>(q.x * s), static_cast<float>(q.y * s), static_cast<float>(s), kInf};
+  return column.s >= grid.s_lo && column.s <= grid.s_hi;
+}
+
+bool column_from_eye(const CoverageGrid& grid, const Ray& ray, SingleColumn& column) {
+  if (ray.origin != grid.map.center) return false;
+  const Vec3d q = turn(grid.map, to_double(ray.direction));
+  if (!(q.z >= 0x1p-60 && q.z <= 0x1p60)) return false;
+  column = {static_cast<float>(q.x / q.z), static_cast<float>(q.y / q.z), kInf, 0};
+  return true;
 }
 
 void pass_on(size_t count, std::span<const uint32_t> subset, std::vector<uint32_t>& rest) {
@@ -56,6 +94,12 @@ void in_parts(const CoverageGrid& grid, const ColumnRays& rays, size_t points, s
   if (points > 0xffffffffu) throw Error(ErrorCode::kLimit, "Coverage", "more than 2^32 rays in one call");
   const size_t count = subset.empty() ? points : subset.size();
   const bool sorted = count >= kRaysPerTile * grid.tiles.size() && bytes_of(grid) > kSmallGrid;
+  if (count <= kLeastRaysPerTask) {
+    CoverageCounters unwanted;
+    const uint32_t* chosen = subset.empty() ? nullptr : subset.data();
+    return ask({rays, chosen, 0, static_cast<uint32_t>(count), sorted}, rest,
+               counters != nullptr ? *counters : unwanted);
+  }
   const unsigned workers = threads == 0 ? default_threads() : threads;
   const size_t grain = std::clamp((count + workers - 1) / workers, kLeastRaysPerTask, kMostRaysPerTask);
   const size_t parts = (count + grain - 1) / grain;
@@ -105,6 +149,30 @@ Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea
   data_ = std::make_shared<const Data>(std::move(data));
 }
 
+int Coverage::sense(Vec3 direction) const {
+  return is_useful() && !data_->grid.map.is_eye ? sense_of(data_->grid, direction) : 0;
+}
+
+bool Coverage::has_eye(Vec3 point) const {
+  return is_useful() && data_->grid.map.is_eye && point == data_->grid.map.center;
+}
+
+std::optional<bool> Coverage::occluded(const Ray& ray) const {
+  const CoverageGrid& grid = data_->grid;
+  SingleColumn column{};
+  if (!is_useful() || ray.tmin != 0) return {};
+  if (!(grid.map.is_eye ? column_to_eye(grid, ray, column) : column_along(grid, ray, 1, column))) return {};
+  return coverage_kernels(data_->isa).any_of_one(grid, column, ray);
+}
+
+std::optional<Hit> Coverage::intersect(const Ray& ray) const {
+  const CoverageGrid& grid = data_->grid;
+  SingleColumn column{};
+  if (!is_useful() || ray.tmin != 0 || ray.tmax != kInf) return {};
+  if (!(grid.map.is_eye ? column_from_eye(grid, ray, column) : column_along(grid, ray, -1, column))) return {};
+  return coverage_kernels(data_->isa).nearest_of_one(grid, column, ray);
+}
+
 bool Coverage::is_useful() const {
   return data_->grid.is_useful();
 }
@@ -114,7 +182,7 @@ void Coverage::occluded(std::span<const Vec3> origins, Vec3 direction, std::span
                         CoverageCounters* counters) const {
   check_sizes(origins.size(), flags.size());
   const CoverageGrid& grid = data_->grid;
-  if (!is_useful() || grid.map.is_eye || sense(grid, direction) != 1) return pass_on(origins.size(), subset, rest);
+  if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != 1) return pass_on(origins.size(), subset, rest);
   in_parts(grid, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest, threads, counters,
            [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
              coverage_kernels(data_->isa).any(grid, batch, flags.data(), others, counts);
@@ -138,7 +206,7 @@ void Coverage::intersect(std::span<const Vec3> origins, Vec3 direction, std::spa
                          CoverageCounters* counters) const {
   check_sizes(origins.size(), hits.size());
   const CoverageGrid& grid = data_->grid;
-  if (!is_useful() || grid.map.is_eye || sense(grid, direction) != -1) return pass_on(origins.size(), subset, rest);
+  if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != -1) return pass_on(origins.size(), subset, rest);
   in_parts(grid, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest, threads, counters,
            [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
              coverage_kernels(data_->isa).nearest(grid, batch, hits.data(), others, counts);

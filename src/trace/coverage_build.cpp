@@ -96,7 +96,8 @@ double set_eye_window(CoverageGrid& grid, const AreaGeometry& area) {
   const double size = std::max(half.x, half.y), slant = std::sqrt(1 + 2 * size * size);
   e.greatest_xy = size;
   e.place = (16 * slant * (1 + size) + 16 * size) * kRoundoff;
-  e.drift = 2 * kRoundoff * slant * (1 + size) * farthest;
+  e.drift = 1.25 * kMostOffset * slant * (1 + size) * farthest;
+  e.end = 4 * kMostOffset * slant * farthest;
   e.evaluation = 16 * (1 + size) * kRoundoff;
   e.relative_depth = 32 * slant * kRoundoff;
   grid.x_lo = static_cast<float>(-half.x), grid.x_hi = static_cast<float>(half.x);

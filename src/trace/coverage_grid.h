@@ -29,6 +29,9 @@ struct ColumnMap {
 /// Parallel rays are columns as far as their direction leaves the light's by at most this slope (in the map).
 inline constexpr double kMostSlope = 0x1p-22;
 
+/// Rays to and from an eye are columns as far as their line passes it within this part of their length.
+inline constexpr double kMostOffset = 0x1p-22;
+
 /// Bounds of errors in the map's units: of a query's place, and how far a ray may leave its column.
 struct ColumnErrors {
   double place = 0;       // of x and y
@@ -36,6 +39,7 @@ struct ColumnErrors {
   double evaluation = 0;  // of an edge's float arithmetic
   double depth = 0;       // of s: depth + relative_depth * s
   double relative_depth = 0;
+  double end = 0;                          // of the end of a ray that ends at an eye
   double greatest_xy = 0, greatest_s = 0;  // of queries and of what they meet
 
   double depth_error(double s) const { return depth + relative_depth * (s < 0 ? -s : s); }

@@ -17,12 +17,12 @@ struct Outline {
   size_t count = 0;
 };
 
-/// Sutherland and Hodgman, "Reentrant polygon clipping" (1974), against dot(side, p) >= 0.
-Outline cut(const Outline& outline, Vec3d side) {
+/// Sutherland and Hodgman, "Reentrant polygon clipping" (1974), against dot(side, p) + offset >= 0.
+Outline cut(const Outline& outline, Vec3d side, double offset = 0) {
   Outline result;
   for (size_t i = 0; i < outline.count; ++i) {
     const Vec3d a = outline.points[i], b = outline.points[(i + 1) % outline.count];
-    const double at_a = dot(side, a), at_b = dot(side, b);
+    const double at_a = dot(side, a) + offset, at_b = dot(side, b) + offset;
     if (at_a >= 0) result.points[result.count++] = a;
     if ((at_a < 0 && at_b > 0) || (at_a > 0 && at_b < 0))
       result.points[result.count++] = a + (b - a) * (at_a / (at_a - at_b));
@@ -34,6 +34,21 @@ void bound_parallel(const std::array<Vec3d, 3>& q, SeenTriangle& seen) {
   seen.x_lo = std::min({q[0].x, q[1].x, q[2].x}), seen.x_hi = std::max({q[0].x, q[1].x, q[2].x});
   seen.y_lo = std::min({q[0].y, q[1].y, q[2].y}), seen.y_hi = std::max({q[0].y, q[1].y, q[2].y});
   seen.s_lo = std::min({q[0].z, q[1].z, q[2].z}), seen.s_hi = std::max({q[0].z, q[1].z, q[2].z});
+}
+
+/// Does the triangle come within `distance` of the eye, in all coordinates?
+bool is_around_eye(const Corners& q, double distance) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = q[0][axis], b = q[1][axis], c = q[2][axis];
+    if (std::min({a, b, c}) > distance || std::max({a, b, c}) < -distance) return false;
+  }
+  Outline outline{{q[0], q[1], q[2]}, 3};
+  for (int axis = 0; axis < 3; ++axis) {
+    Vec3d side;
+    side[axis] = 1;
+    outline = cut(cut(outline, side, distance), -side, distance);
+  }
+  return outline.count > 0;
 }
 
 /// The part in the eye's window, widened a little; false where there is none.
@@ -157,6 +172,7 @@ Seen look_at(const CoverageGrid& grid, double near_z, uint32_t id, SeenTriangle&
   seen = {};
   Corners corners = q;
   if (grid.map.is_eye) {
+    if (is_around_eye(q, grid.errors.end)) return Seen::kNear;
     double nearest = 0;
     if (!bound_before_eye(grid, q, seen, nearest)) return Seen::kNothing;
     if (!(nearest >= near_z)) return Seen::kNear;

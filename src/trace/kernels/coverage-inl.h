@@ -37,7 +37,23 @@ HWY_INLINE bool confirm(const CoverageGrid& grid, uint32_t id, const Ray& ray, H
   return true;
 }
 
-/// Any triangle ahead of the column?
+/// Any triangle ahead of the column? asks(id) decides where margins do not.
+template <class Asks>
+HWY_INLINE bool meets_any(const CoverageGrid& grid, const Waiting& w, const Asks& asks, uint64_t& tests) {
+  const CoverageReference* reference = grid.references.data() + w.first;
+  for (uint32_t i = 0; i < w.count; ++i) {
+    if (reference[i].top < w.code) break;
+    const CoverageTriangle& triangle = grid.triangles[reference[i].triangle()];
+    const Verdict verdict = meet(triangle, w.x, w.y, w.s);
+    ++tests;
+    if (verdict.possible != 15) continue;
+    if (verdict.sure == 15 || asks(triangle.id)) return true;
+  }
+  for (const uint32_t id : grid.near_triangles)
+    if (asks(id)) return true;
+  return false;
+}
+
 struct AnyHit {
   const CoverageGrid& grid;
   const ColumnBatch& batch;
@@ -60,29 +76,65 @@ struct AnyHit {
   HWY_INLINE void answer(const Waiting& w) const { flags[w.number] = is_hit(w) ? 1 : 0; }
 
   HWY_INLINE bool is_hit(const Waiting& w) const {
-    const CoverageReference* reference = grid.references.data() + w.first;
-    for (uint32_t i = 0; i < w.count; ++i) {
-      if (reference[i].top < w.code) break;
-      const CoverageTriangle& triangle = grid.triangles[reference[i].triangle()];
-      const Verdict verdict = meet(triangle, w.x, w.y, w.s);
-      ++counters.triangle_tests;
-      if (verdict.possible != 15) continue;
-      if (verdict.sure == 15 || asks(triangle.id, w.number)) return true;
-    }
-    for (const uint32_t id : grid.near_triangles)
-      if (asks(id, w.number)) return true;
-    return false;
+    const auto asks = [&](uint32_t id) {
+      ++counters.confirmations;
+      Hit hit;
+      return confirm(grid, id, batch.rays[w.number], hit);
+    };
+    return meets_any(grid, w, asks, counters.triangle_tests);
   }
   HWY_INLINE void start(uint32_t) const {}
   HWY_INLINE void miss(uint32_t number) const { flags[number] = 0; }
   HWY_INLINE void finish() const {}
-
-  bool asks(uint32_t id, uint32_t number) const {
-    ++counters.confirmations;
-    Hit hit;
-    return confirm(grid, id, batch.rays[number], hit);
-  }
 };
+
+/// A cell's references.
+struct CellList {
+  uint32_t first, count, tile;
+};
+
+/// Calls tell(id) for triangles one of which a column that starts before all of them meets first, if any. Returns how
+/// many were looked at.
+template <class Tell>
+HWY_INLINE uint32_t first_hits(const CoverageGrid& grid, float x, float y, const CellList& list, const Tell& tell) {
+  struct Candidate {
+    uint32_t id;
+    float highest;
+  };
+  constexpr size_t kMostCandidates = 8;
+  const CoverageReference* reference = grid.references.data() + list.first;
+  Candidate candidates[kMostCandidates];  // NOLINT: filled as far as size says
+  size_t size = 0;
+  float sure = -kInf;  // the first hit is not below this depth
+  int32_t sure_code = 0;
+  const auto tell_all = [&] {
+    for (size_t c = 0; c < size; ++c)
+      if (candidates[c].highest >= sure) tell(candidates[c].id);
+    size = 0;
+  };
+  uint32_t i = 0;
+  for (; i < list.count; ++i) {
+    if (reference[i].top < sure_code) break;
+    const CoverageTriangle& triangle = grid.triangles[reference[i].triangle()];
+    const Verdict verdict = meet(triangle, x, y, 0);
+    if ((verdict.possible & 7) != 7) continue;
+    float depth = kInf, radius = 0;
+    if (triangle.ahead < 0) {  // else it has no plane to speak of
+      const float per_ahead = -1 / triangle.ahead;
+      depth = (triangle.a[3] * x + triangle.b[3] * y + triangle.c[3]) * per_ahead;
+      radius = 2 * triangle.margin * per_ahead;
+      if (depth + radius < sure) continue;
+      if ((verdict.sure & 7) == 7 && depth - radius > sure) {
+        sure = depth - radius;
+        sure_code = code_of(grid.tiles[list.tile], sure) - 2;
+      }
+    }
+    if (size == kMostCandidates) tell_all();
+    candidates[size++] = {triangle.id, depth + radius};
+  }
+  tell_all();
+  return i;
+}
 
 /// The first triangle of a column that starts before all of them.
 struct NearestHit {
@@ -93,7 +145,6 @@ struct NearestHit {
   Confirmations& confirmations;
 
   static constexpr bool kStartsOutside = true;
-  static constexpr size_t kMostCandidates = 8;
 
   HWY_INLINE void start(uint32_t number) const { hits[number] = {}; }
   HWY_INLINE void miss(uint32_t number) const { hits[number] = {}; }
@@ -104,44 +155,10 @@ struct NearestHit {
     return true;
   }
 
-  struct Candidate {
-    uint32_t id;
-    float highest;
-  };
-
   HWY_INLINE void answer(const Waiting& w) const {
-    const CoverageReference* reference = grid.references.data() + w.first;
     for (const uint32_t id : grid.near_triangles) consider(id, w.number);
-    Candidate candidates[kMostCandidates];  // NOLINT: filled as far as size says
-    size_t size = 0;
-    float sure = -kInf;  // the first hit is not below this depth
-    int32_t sure_code = 0;
-    for (uint32_t i = 0; i < w.count; ++i) {
-      if (reference[i].top < sure_code) break;
-      const CoverageTriangle& triangle = grid.triangles[reference[i].triangle()];
-      const Verdict verdict = meet(triangle, w.x, w.y, 0);
-      ++counters.triangle_tests;
-      if ((verdict.possible & 7) != 7) continue;
-      float depth = kInf, radius = 0;
-      if (triangle.ahead < 0) {  // else it has no plane to speak of
-        const float per_ahead = -1 / triangle.ahead;
-        depth = (triangle.a[3] * w.x + triangle.b[3] * w.y + triangle.c[3]) * per_ahead;
-        radius = 2 * triangle.margin * per_ahead;
-        if (depth + radius < sure) continue;
-        if ((verdict.sure & 7) == 7 && depth - radius > sure) {
-          sure = depth - radius;
-          sure_code = code_of(grid.tiles[w.tile], sure) - 2;
-        }
-      }
-      if (size == kMostCandidates) {
-        for (size_t c = 0; c < size; ++c)
-          if (candidates[c].highest >= sure) consider(candidates[c].id, w.number);
-        size = 0;
-      }
-      candidates[size++] = {triangle.id, depth + radius};
-    }
-    for (size_t c = 0; c < size; ++c)
-      if (candidates[c].highest >= sure) consider(candidates[c].id, w.number);
+    const auto tell = [&](uint32_t id) { consider(id, w.number); };
+    counters.triangle_tests += first_hits(grid, w.x, w.y, {w.first, w.count, w.tile}, tell);
   }
 
   HWY_INLINE void consider(uint32_t id, uint32_t number) const {
@@ -252,6 +269,51 @@ void ask(const CoverageGrid& grid, const ColumnBatch& batch, const Question& que
   std::vector<Waiting> sorted;
   sort_by_tile(waiting, grid.tiles.size(), tiles, sorted);
   answer_all(grid, question, waiting.data(), waiting.size());
+}
+
+/// The cell of one column; false for columns that are not the grid's.
+inline bool find_cell(const CoverageGrid& grid, const SingleColumn& c, uint32_t& tile, uint32_t& cell) {
+  if (!(c.x >= grid.x_lo && c.x <= grid.x_hi && c.y >= grid.y_lo && c.y <= grid.y_hi)) return false;
+  const float gx = (c.x - grid.x_lo) * grid.tiles_per_unit, gy = (c.y - grid.y_lo) * grid.tiles_per_unit;
+  const uint32_t tx = std::min(static_cast<uint32_t>(gx), grid.tiles_x - 1);
+  const uint32_t ty = std::min(static_cast<uint32_t>(gy), grid.tiles_y - 1);
+  tile = ty * grid.tiles_x + tx;
+  cell = cell_at(grid.tiles[tile], gx - static_cast<float>(tx), gy - static_cast<float>(ty));
+  return true;
+}
+
+inline std::optional<bool> single_any(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray) {
+  uint32_t tile = 0, number = 0;
+  if (!find_cell(grid, column, tile, number)) return {};
+  const CoverageCell* cell = &grid.cells[number];
+  if (code_of(grid.tiles[tile], column.end) <= cell->far) return {};
+  const uint16_t code = code_of(grid.tiles[tile], column.s);
+  if (code < cell->cover) return true;
+  if (code > cell->far && grid.near_triangles.empty()) return false;
+  const Waiting w{column.x, column.y, column.s, cell->first, cell[1].first - cell->first, 0, tile, code, 0};
+  uint64_t tests = 0;
+  return meets_any(
+      grid, w,
+      [&](uint32_t id) {
+        Hit hit;
+        return confirm(grid, id, ray, hit);
+      },
+      tests);
+}
+
+inline std::optional<Hit> single_nearest(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray) {
+  uint32_t tile = 0, number = 0;
+  if (!find_cell(grid, column, tile, number)) return {};
+  const CoverageCell* cell = &grid.cells[number];
+  if (code_of(grid.tiles[tile], column.s) <= cell->far && column.s < kInf) return {};
+  Hit best;
+  const auto consider = [&](uint32_t id) {
+    Hit hit;
+    if (confirm(grid, id, ray, hit) && is_nearer(hit, best)) best = hit;
+  };
+  for (const uint32_t id : grid.near_triangles) consider(id);
+  first_hits(grid, column.x, column.y, {cell->first, cell[1].first - cell->first, tile}, consider);
+  return best;
 }
 
 }  // namespace

@@ -30,10 +30,18 @@ void nearest(const CoverageGrid& grid, const ColumnBatch& batch, Hit* hits, std:
   counters.add(counts);
 }
 
+std::optional<bool> any_of_one(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray) {
+  return single_any(grid, column, ray);
+}
+
+std::optional<Hit> nearest_of_one(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray) {
+  return single_nearest(grid, column, ray);
+}
+
 }  // namespace
 
 extern const CoverageKernels kCoverageTable;
-const CoverageKernels kCoverageTable{any, nearest};
+const CoverageKernels kCoverageTable{any_of_one, nearest_of_one, any, nearest};
 
 }  // namespace raygrain::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

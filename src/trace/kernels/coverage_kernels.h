@@ -1,6 +1,7 @@
 // Questions to a coverage grid, once per instruction set.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "raygrain/coverage.h"
@@ -35,7 +36,14 @@ struct ColumnBatch {
   bool sorted = false;
 };
 
+/// One ray as a column: from depth s on, up to depth `end` or from it down.
+struct SingleColumn {
+  float x, y, s, end;
+};
+
 struct CoverageKernels {
+  std::optional<bool> (*any_of_one)(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray);
+  std::optional<Hit> (*nearest_of_one)(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray);
   void (*any)(const CoverageGrid& grid, const ColumnBatch& batch, uint8_t* flags, std::vector<uint32_t>& rest,
               CoverageCounters& counters);
   void (*nearest)(const CoverageGrid& grid, const ColumnBatch& batch, Hit* hits, std::vector<uint32_t>& rest,
