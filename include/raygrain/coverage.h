@@ -16,10 +16,11 @@
 namespace raygrain {
 
 struct CoverageOptions {
-  float cells_per_triangle = 0.25f;       // of each tile, up to a factor of four; > 0
-  uint32_t triangles_per_tile = 256;      // on average; >= 1
-  std::optional<Isa> isa = std::nullopt;  // default_isa() without one
-  unsigned threads = 0;                   // of the build; 0 = all
+  float cells_per_triangle = 0.25f;          // of each tile, up to a factor of four; > 0
+  uint32_t triangles_per_tile = 256;         // on average; >= 1
+  std::optional<Isa> isa = std::nullopt;     // default_isa() without one
+  std::optional<bool> sorts = std::nullopt;  // the rays of batches by tile; without: where it was measured to pay
+  unsigned threads = 0;                      // of the build; 0 = all
 };
 
 /// Counts of what was done (sums).

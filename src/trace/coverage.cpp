@@ -17,6 +17,7 @@ namespace raygrain {
 struct Coverage::Data {
   CoverageGrid grid;
   Isa isa = Isa::kScalar;
+  std::optional<bool> sorts;
   double seconds = 0;
 };
 
@@ -87,13 +88,18 @@ void pass_on(size_t count, std::span<const uint32_t> subset, std::vector<uint32_
   for (size_t i = 0; i < count; ++i) rest.push_back(static_cast<uint32_t>(i));
 }
 
+bool pays_to_sort(const CoverageGrid& grid, size_t rays) {
+  return rays >= kRaysPerTile * grid.tiles.size() && bytes_of(grid) > kSmallGrid;
+}
+
 /// Runs ask(batch, rest, counters) over parts of the rays.
 template <class Ask>
-void in_parts(const CoverageGrid& grid, const ColumnRays& rays, size_t points, std::span<const uint32_t> subset,
-              std::vector<uint32_t>& rest, unsigned threads, CoverageCounters* counters, const Ask& ask) {
+void in_parts(const CoverageGrid& grid, std::optional<bool> sorts, const ColumnRays& rays, size_t points,
+              std::span<const uint32_t> subset, std::vector<uint32_t>& rest, unsigned threads,
+              CoverageCounters* counters, const Ask& ask) {
   if (points > 0xffffffffu) throw Error(ErrorCode::kLimit, "Coverage", "more than 2^32 rays in one call");
   const size_t count = subset.empty() ? points : subset.size();
-  const bool sorted = count >= kRaysPerTile * grid.tiles.size() && bytes_of(grid) > kSmallGrid;
+  const bool sorted = sorts ? *sorts : pays_to_sort(grid, count);
   if (count <= kLeastRaysPerTask) {
     CoverageCounters unwanted;
     const uint32_t* chosen = subset.empty() ? nullptr : subset.data();
@@ -144,7 +150,7 @@ Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea
     throw Error(ErrorCode::kUsage, "CoverageOptions::isa", "this CPU does not offer '" + std::string(name(isa)) + "'");
   const Timer timer;
   const CoverageDensity density{options.cells_per_triangle, static_cast<double>(options.triangles_per_tile)};
-  Data data{build_coverage(std::move(mesh), AreaGeometry(area), density, options.threads), isa, 0};
+  Data data{build_coverage(std::move(mesh), AreaGeometry(area), density, options.threads), isa, options.sorts, 0};
   data.seconds = timer.seconds();
   data_ = std::make_shared<const Data>(std::move(data));
 }
@@ -183,8 +189,8 @@ void Coverage::occluded(std::span<const Vec3> origins, Vec3 direction, std::span
   check_sizes(origins.size(), flags.size());
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != 1) return pass_on(origins.size(), subset, rest);
-  in_parts(grid, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest, threads, counters,
-           [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
+  in_parts(grid, data_->sorts, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
+           threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
              coverage_kernels(data_->isa).any(grid, batch, flags.data(), others, counts);
            });
 }
@@ -195,8 +201,8 @@ void Coverage::occluded_towards(std::span<const Vec3> origins, Vec3 point, std::
   check_sizes(origins.size(), flags.size());
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || !grid.map.is_eye || point != grid.map.center) return pass_on(origins.size(), subset, rest);
-  in_parts(grid, {ColumnRays::Kind::kTowards, point, origins.data()}, origins.size(), subset, rest, threads, counters,
-           [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
+  in_parts(grid, data_->sorts, {ColumnRays::Kind::kTowards, point, origins.data()}, origins.size(), subset, rest,
+           threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
              coverage_kernels(data_->isa).any(grid, batch, flags.data(), others, counts);
            });
 }
@@ -207,8 +213,8 @@ void Coverage::intersect(std::span<const Vec3> origins, Vec3 direction, std::spa
   check_sizes(origins.size(), hits.size());
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != -1) return pass_on(origins.size(), subset, rest);
-  in_parts(grid, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest, threads, counters,
-           [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
+  in_parts(grid, data_->sorts, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
+           threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
              coverage_kernels(data_->isa).nearest(grid, batch, hits.data(), others, counts);
            });
 }
@@ -219,8 +225,8 @@ void Coverage::intersect_from(Vec3 eye, std::span<const Vec3> directions, std::s
   check_sizes(directions.size(), hits.size());
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || !grid.map.is_eye || eye != grid.map.center) return pass_on(directions.size(), subset, rest);
-  in_parts(grid, {ColumnRays::Kind::kFrom, eye, directions.data()}, directions.size(), subset, rest, threads, counters,
-           [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
+  in_parts(grid, data_->sorts, {ColumnRays::Kind::kFrom, eye, directions.data()}, directions.size(), subset, rest,
+           threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
              coverage_kernels(data_->isa).nearest(grid, batch, hits.data(), others, counts);
            });
 }

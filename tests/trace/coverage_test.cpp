@@ -176,7 +176,7 @@ void for_families(uint64_t seeds, const Body& body) {
 CoverageOptions some_options(uint64_t seed, Isa isa) {
   const float cells[] = {0.25f, 4, 64};
   const uint32_t triangles[] = {256, 16, 4};
-  return {cells[seed % 3], triangles[(seed / 3 + seed) % 3], isa, 1};
+  return {cells[seed % 3], triangles[(seed / 3 + seed) % 3], isa, seed % 2 == 1, 1};
 }
 
 TEST(Coverage, AgreesWithTheOracleAlongADirection) {
