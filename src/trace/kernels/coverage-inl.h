@@ -14,7 +14,7 @@
 #include "raygrain/triangle.h"
 
 #include "trace/kernels/columns-inl.h"
-#include "trace/kernels/confirm-inl.h"
+#include "trace/kernels/pairs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raygrain::HWY_NAMESPACE {

@@ -1,11 +1,11 @@
 // intersect_triangle for several rays at once: the same double-precision filter (src/geometry/triangle.cpp), whose
 // proof allows any order of rounding. What it does not decide goes to the one function itself. Included once per
 // instruction set.
-#if defined(RAYGRAIN_TRACE_KERNELS_CONFIRM_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef RAYGRAIN_TRACE_KERNELS_CONFIRM_INL_H
-#undef RAYGRAIN_TRACE_KERNELS_CONFIRM_INL_H
+#if defined(RAYGRAIN_TRACE_KERNELS_PAIRS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYGRAIN_TRACE_KERNELS_PAIRS_INL_H
+#undef RAYGRAIN_TRACE_KERNELS_PAIRS_INL_H
 #else
-#define RAYGRAIN_TRACE_KERNELS_CONFIRM_INL_H
+#define RAYGRAIN_TRACE_KERNELS_PAIRS_INL_H
 #endif
 
 #include <algorithm>
