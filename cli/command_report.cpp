@@ -9,6 +9,7 @@
 #include "raygrain/io.h"
 #include "raygrain/study_report.h"
 
+#include "cli/built_page.h"
 #include "cli/commands.h"
 #include "cli/output.h"
 #include "cli/progress.h"
@@ -34,16 +35,6 @@ std::string results_file(const std::string& path) {
   return fs::is_directory(path, ignored) ? (fs::path(path) / "results.csv").string() : path;
 }
 
-/// The interactive page as it is built or installed: PREFIX/share/raygrain beside PREFIX/bin. Empty where there is
-/// none.
-std::string installed_template() {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  const fs::path page = program.parent_path().parent_path() / "share/raygrain/report-page.html";
-  return fs::exists(page, error) ? page.string() : std::string{};
-}
-
 void save(const std::string& path, const std::string& text) {
   write_file_atomically(path, [&](std::ostream& out) { out << text; });
 }
@@ -53,7 +44,7 @@ std::string make_page(const Options& options, const StudyReport& report) {
   constexpr const char* kNote =
       "Static charts. `make report-page` builds the interactive page (it needs node and npm); `raygrain report` then "
       "fills it instead.";
-  const std::string path = options.page_template.empty() ? installed_template() : options.page_template;
+  const std::string path = options.page_template.empty() ? built_page("report-page.html") : options.page_template;
   if (options.plain || path.empty()) {
     save(options.page, static_page(report, kNote));
     return options.plain ? ""

@@ -37,6 +37,7 @@ constexpr Command kCommands[] = {
     {"analyze", "Print all metrics of one tree", declare_analyze},
     {"trace", "Find the nearest hits of rays from a file", declare_trace},
     {"report", "Draw the results of studies as a page of charts", declare_report},
+    {"view", "Show scene, areas, trees, rays and costs in a browser", declare_view},
     {"recipes", "List the measures, orientations and builders that recipes are made of", declare_recipes},
 };
 constexpr Command kSceneCommands[] = {

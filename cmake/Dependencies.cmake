@@ -7,6 +7,7 @@ find_package(Boost 1.74 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(fmt 9 REQUIRED)
 find_package(assimp 5.2 REQUIRED)
+find_package(ZLIB REQUIRED)
 
 # Their headers are not ours to warn about.
 add_library(raygrain_boost INTERFACE)

@@ -12,5 +12,7 @@ configure_package_config_file(cmake/raygrain-config.cmake.in ${PROJECT_BINARY_DI
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/raygrain-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/raygrain-config.cmake ${PROJECT_BINARY_DIR}/raygrain-config-version.cmake
         DESTINATION ${package_dir})
-# The interactive page of `raygrain report`, where it was built (make report-page).
-install(FILES ${PROJECT_BINARY_DIR}/share/raygrain/report-page.html DESTINATION share/raygrain OPTIONAL)
+# The interactive pages of `raygrain report` and `raygrain view`, where they were built (make report-page, make viewer).
+foreach(page report-page viewer)
+  install(FILES ${PROJECT_BINARY_DIR}/share/raygrain/${page}.html DESTINATION share/raygrain OPTIONAL)
+endforeach()

@@ -19,7 +19,7 @@ cd "${1:-$(dirname "$0")/..}"
     own("accel", "top_level accelerator")
     own("analyze", "fields analyze")
     own("study", "compare study")
-    own("report", "report chart study_report")
+    own("report", "report chart study_report view")
     own("cli", "raygrain")
   }
   function own(module, headers,   list, i) {

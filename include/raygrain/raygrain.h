@@ -31,4 +31,5 @@
 #include "raygrain/trace.h"
 #include "raygrain/triangle.h"
 #include "raygrain/vec.h"
+#include "raygrain/view.h"
 #include "raygrain/wide.h"

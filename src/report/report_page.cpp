@@ -1,10 +1,10 @@
 // The report as one HTML file: the interactive page filled with data, or plain HTML with SVG pictures.
 #include <fmt/format.h>
 
-#include "raygrain/error.h"
 #include "raygrain/study_report.h"
 
 #include "report/drawing.h"
+#include "report/page_template.h"
 
 namespace raygrain {
 
@@ -23,19 +23,6 @@ table{border-collapse:collapse;display:block;overflow-x:auto}td,th{padding:.2rem
 @media(prefers-color-scheme:dark){body{color:#e9ecef;background:#16181c}.note{color:#adb5bd}}
 @media print{article{break-inside:avoid}body{color:#000;background:#fff}}
 )";
-
-/// JSON in a script element: no "</script>" and no "<!--" may occur in it.
-std::string script_safe(const std::string& json) {
-  std::string safe;
-  safe.reserve(json.size());
-  for (const char c : json) {
-    if (c == '<')
-      safe += "\\u003c";
-    else
-      safe += c;
-  }
-  return safe;
-}
 
 std::string table_html(const ChartTable& table) {
   if (table.rows.empty()) return {};
@@ -61,10 +48,7 @@ std::string chart_html(const Chart& chart) {
 }  // namespace
 
 std::string interactive_page(const StudyReport& report, const std::string& page, const std::string& path) {
-  const size_t start = page.find(kPlace);
-  if (start == std::string::npos || page.find(kPlace, start + 1) != std::string::npos)
-    throw Error(ErrorCode::kMalformed, path, "is no report page of raygrain", "Build it again with make report-page");
-  return page.substr(0, start) + script_safe(study_report_json(report)) + page.substr(start + kPlace.size());
+  return filled_page(page, kPlace, script_safe(study_report_json(report)), {"report page", "report-page"}, path);
 }
 
 std::string static_page(const StudyReport& report, const std::string& note) {
