@@ -10,7 +10,7 @@ CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_
 
 BENCH ?= --quick
 
-.PHONY: help build demo bench bench-dependencies report-page report-page-test report-page-dependencies test test-full asan-test release-test tsan-test clang-test coverage format check-format tidy \
+.PHONY: help build demo bench bench-dependencies report-page report-page-test viewer viewer-test page-dependencies test test-full asan-test release-test tsan-test clang-test coverage format check-format tidy \
         dependencies full-dependencies install clean
 
 help:            ## this list
@@ -38,25 +38,35 @@ bench: bench-dependencies ## against Embree on the same rays; BENCH="--json FILE
 demo: build      ## build, then compare the paper's heuristics on a built-in city under a low sun
 	@scripts/demo.sh $(RELEASE)/bin/raygrain build/demo
 
-report-page-dependencies:
-	@scripts/install-dependencies.sh report-page
+page-dependencies:
+	@scripts/install-dependencies.sh pages
 
-PAGE := report-page
-TEMPLATE := $(RELEASE)/share/raygrain/report-page.html
+# The interactive pages: a folder of TypeScript each, bundled into one HTML file that the program fills.
+PAGES := report-page viewer
+TEMPLATES := $(RELEASE)/share/raygrain
+page_sources = $(wildcard $(1)/*.html $(1)/*.ts $(1)/src/* $(1)/src/*/*)
 
-report-page: $(TEMPLATE) ## the interactive page of `raygrain report`; needs the npm registry, nothing else does
-$(TEMPLATE): $(PAGE)/node_modules $(wildcard $(PAGE)/*.html $(PAGE)/*.ts $(PAGE)/src/*)
-	@cd $(PAGE) && npm run --silent build
-	@mkdir -p $(@D) && cp $(PAGE)/dist/index.html $@
-	@echo "raygrain report now fills $@"
+report-page: $(TEMPLATES)/report-page.html ## the interactive page of `raygrain report`; needs the npm registry, nothing else does
+viewer: $(TEMPLATES)/viewer.html ## the page of `raygrain view`; needs the npm registry, too
 
-$(PAGE)/node_modules: $(PAGE)/package-lock.json
-	@$(MAKE) --no-print-directory report-page-dependencies
-	@cd $(PAGE) && npm ci --silent && touch node_modules
+define page_rules
+$(TEMPLATES)/$(1).html: $(1)/node_modules $(call page_sources,$(1))
+	@cd $(1) && npm run --silent build
+	@mkdir -p $$(@D) && cp $(1)/dist/index.html $$@
+	@echo "raygrain now fills $$@"
 
-report-page-test: build report-page ## the report in headless Chromium: every chart, hover, dark, print, phone; pictures in build/report-page-test
+$(1)/node_modules: $(1)/package-lock.json
+	@$$(MAKE) --no-print-directory page-dependencies
+	@cd $(1) && npm ci --silent && touch node_modules
+
+$(1)-test: build $(1)
 	@scripts/install-dependencies.sh browser
-	@cd $(PAGE) && npm test --silent -- ../$(RELEASE)/bin/raygrain ../build/report-page-test
+	@cd $(1) && npm test --silent -- ../$(RELEASE)/bin/raygrain ../build/$(1)-test
+endef
+$(foreach page,$(PAGES),$(eval $(call page_rules,$(page))))
+
+report-page-test: ## the report in headless Chromium: every chart, hover, dark, print, phone; pictures in build/report-page-test
+viewer-test: ## the viewer in headless Chromium, and its counts against the analyzer's; pictures in build/viewer-test
 
 test: dependencies ## everything a commit must pass: sanitizers on the core, then all tests in release
 	@$(MAKE) --no-print-directory asan-test
@@ -83,6 +93,7 @@ test-full: full-dependencies ## all of it: ThreadSanitizer, Clang, coverage, cla
 	@cmake --build $(RELEASE) -j $(JOBS)
 	@cd $(RELEASE) && RAYGRAIN_TEST_SCALE=full $(CTEST)
 	@$(MAKE) --no-print-directory report-page-test
+	@$(MAKE) --no-print-directory viewer-test
 
 tsan-test:
 	@$(call PRESET,tsan)

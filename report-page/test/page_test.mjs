@@ -2,25 +2,15 @@
 // that is not as it should be; leaves pictures of everything in FOLDER.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
-import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join, resolve } from 'node:path';
 import { chromium } from 'playwright-core';
+import { visit as visitPage, WITHOUT_GPU } from '../../scripts/browser.mjs';
 import { paperResults } from './paper_results.mjs';
 
 const program = resolve(process.argv[2] ?? '../build/release/bin/raygrain');
 const folder = resolve(process.argv[3] ?? '../build/report-page-test');
 const OWN = 'MY-OWN+ALL';
-const FLAGS = [
-  '--headless',
-  '--no-sandbox',
-  '--disable-gpu',
-  '--disable-quic',
-  '--no-first-run',
-  '--disable-background-networking',
-  '--disable-component-update',
-  '--disable-sync',
-];
 
 function makeReport() {
   rmSync(folder, { recursive: true, force: true });
@@ -32,35 +22,7 @@ function makeReport() {
   return page;
 }
 
-/** Opens the report in a browser of its own, lets `look` look at it, and demands that nothing was complained about. */
-async function visit(page, options, look) {
-  const profile = mkdtempSync(join(tmpdir(), 'raygrain-browser-'));
-  const browser = await chromium.launchPersistentContext(profile, {
-    executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
-    args: FLAGS,
-    offline: true,
-    acceptDownloads: true,
-    ...options,
-  });
-  try {
-    const tab = await browser.newPage();
-    const complaints = [];
-    tab.on('console', (message) => {
-      if (['error', 'warning'].includes(message.type())) complaints.push(message.text());
-    });
-    tab.on('pageerror', (error) => complaints.push(error.message));
-    tab.on('request', (request) => {
-      if (/^https?:/.test(request.url())) complaints.push(`network: ${request.url()}`);
-    });
-    await tab.goto(`file://${page}`);
-    await tab.waitForFunction(() => document.documentElement.dataset.drawn, null, { timeout: 120_000 });
-    await look(tab);
-    assert.deepEqual(complaints, [], 'the console stays silent');
-  } finally {
-    await browser.close();
-    rmSync(profile, { recursive: true, force: true });
-  }
-}
+const visit = (page, options, look) => visitPage(chromium, `file://${page}`, { flags: WITHOUT_GPU, ready: 'drawn', ...options }, look);
 
 /** What is in the charts, panel by panel. */
 function charts(tab) {

@@ -1,0 +1,43 @@
+// Rays of the reader's own, as JSON.
+import { isValidRay, type Ray, type Vec } from './vec';
+
+export const OWN_RAYS_EXAMPLE = '[{"origin": [0, 9, 0], "direction": [0, -1, 0]}]';
+const MOST = 5000;
+
+function floats(values: unknown, what: string): Vec {
+  if (!Array.isArray(values) || values.length !== 3 || !values.every((x) => typeof x === 'number'))
+    throw new Error(`${what} is not three numbers`);
+  return values.map(Math.fround) as Vec;
+}
+
+function limit(value: unknown, otherwise: number, what: string): number {
+  if (value === undefined || value === null) return otherwise;
+  if (typeof value !== 'number') throw new Error(`${what} is no number`);
+  return Math.fround(value);
+}
+
+function toRay(item: unknown, index: number): Ray {
+  const where = `ray ${index}`;
+  if (Array.isArray(item) && item.length >= 6)
+    item = { origin: item.slice(0, 3), direction: item.slice(3, 6), tmin: item[6], tmax: item[7] };
+  if (typeof item !== 'object' || item === null) throw new Error(`${where} is neither an object nor six numbers`);
+  const { origin, direction, tmin, tmax } = item as Record<string, unknown>;
+  const ray: Ray = {
+    origin: floats(origin, `${where}: origin`),
+    direction: floats(direction, `${where}: direction`),
+    tmin: limit(tmin, 0, `${where}: tmin`),
+    tmax: limit(tmax, Infinity, `${where}: tmax`),
+  };
+  if (!isValidRay(ray)) throw new Error(`${where} has no direction or is not finite`);
+  return ray;
+}
+
+/** An array, or an object with "rays": objects {origin, direction, tmin, tmax}, or arrays of 6 to 8 numbers. */
+export function parseRays(text: string): Ray[] {
+  const json = JSON.parse(text) as unknown;
+  const list = Array.isArray(json) ? json : (json as { rays?: unknown } | null)?.rays;
+  if (!Array.isArray(list)) throw new Error('There is no list of rays');
+  if (list.length === 0) throw new Error('The list of rays is empty');
+  if (list.length > MOST) throw new Error(`${list.length} rays are too many: at most ${MOST}`);
+  return list.map(toRay);
+}
