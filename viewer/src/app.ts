@@ -1,6 +1,6 @@
 // What the page holds and does; panels and keys only ask and tell it.
 import type { Area } from './area';
-import { ROLE_COLOURS } from './colours';
+import { randomColour, ROLE_COLOURS } from './colours';
 import { castRays, measureRays, type RayStats } from './cost';
 import type { ViewData } from './data';
 import { boxes, limitBoxes } from './layers/box_layer';
@@ -14,7 +14,6 @@ import type { TopLevel } from './top_level';
 import { boxOf, isLeaf, loadTree, siblingOf, trianglesBelow, type Tree } from './tree';
 import { diagonal, type Ray, type Vec } from './vec';
 import { search } from './walk';
-import { randomColour } from './colours';
 import * as THREE from 'three';
 
 const MOST_MOVING = 4000; // boxes while the camera moves
@@ -102,6 +101,9 @@ export class App {
     else this.stage.fit();
     if (camera.length === 6) this.stage.restore(camera);
     await this.apply(new Set(Object.keys(this.state) as Key[]));
+    this.whileMoving(true); // what a drag needs is there from the beginning
+    this.stage.draw();
+    this.whileMoving(false);
   }
 
   /** Makes everything that depends on what changed anew. */
@@ -152,7 +154,7 @@ export class App {
       return [0, 1, 2].map((k) => all.reduce((sum, c) => sum + c[k], 0) / all.length) as [number, number, number];
     };
     const list = { count: cells.length, box: flat, colour };
-    if (top === 'leaves' || top === 'both') this.topGroup.add(boxes(list, { filled: true, opacity: 0.25 }));
+    if (top === 'leaves' || top === 'both') this.topGroup.add(boxes(list, { filled: true, opacity: Math.min(0.3, 0.5 / Math.cbrt(cells.length)) }));
     if (top === 'wireframe' || top === 'both') this.topGroup.add(boxes(list, { filled: false, opacity: 1 }));
     const chosen = this.top.leaves[cell];
     if (chosen && top !== 'none')

@@ -31,8 +31,14 @@ function along(stops: Colour[], share: number): Colour {
 export const rampColour = (share: number): Colour => along(RAMP, share);
 /** Of a number in [-1, 1]: blue, white, red. */
 export const divergingColour = (value: number): Colour => along(DIVERGING, (value + 1) / 2);
-export const rampGradient = (diverging = false): string =>
-  `linear-gradient(to right, ${(diverging ? DIVERGING : RAMP).map((c) => `rgb(${c.join()})`).join()})`;
+/** Of boxes: without the darkest part, which would not be seen on dark. */
+export const boxColour = (share: number): Colour => rampColour(0.22 + 0.78 * Math.min(Math.max(share, 0), 1));
+
+/** A bar in the colours of a function, for numbers from `low` to `high`. */
+export function gradient(colour: (at: number) => Colour, low: number, high: number): string {
+  const stops = Array.from({ length: 17 }, (_, i) => css(colour(low + ((high - low) * i) / 16)));
+  return `linear-gradient(to right, ${stops.join()})`;
+}
 
 /** Always the same one for a number, and unlike its neighbours'. */
 export function randomColour(index: number): Colour {

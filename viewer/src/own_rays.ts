@@ -32,12 +32,21 @@ function toRay(item: unknown, index: number): Ray {
   return ray;
 }
 
-/** An array, or an object with "rays": objects {origin, direction, tmin, tmax}, or arrays of 6 to 8 numbers. */
+function listOf(json: unknown): unknown[] | null {
+  if (Array.isArray(json)) return json;
+  const rays = (json as { rays?: unknown } | null)?.rays;
+  return Array.isArray(rays) ? rays : null;
+}
+
+/**
+ * An array, or an object with "rays": objects {origin, direction, tmin, tmax}, arrays of 6 to 8 numbers, or ray sets of
+ * a scene.json that list their rays.
+ */
 export function parseRays(text: string): Ray[] {
-  const json = JSON.parse(text) as unknown;
-  const list = Array.isArray(json) ? json : (json as { rays?: unknown } | null)?.rays;
-  if (!Array.isArray(list)) throw new Error('There is no list of rays');
-  if (list.length === 0) throw new Error('The list of rays is empty');
+  const outer = listOf(JSON.parse(text));
+  if (!outer) throw new Error('there is no list of rays');
+  const list = outer.flatMap((item) => (Array.isArray(item) ? [item] : (listOf(item) ?? [item])));
+  if (list.length === 0) throw new Error('the list of rays is empty');
   if (list.length > MOST) throw new Error(`${list.length} rays are too many: at most ${MOST}`);
   return list.map(toRay);
 }

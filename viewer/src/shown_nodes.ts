@@ -1,6 +1,6 @@
 // Which nodes of a tree are drawn, and in which colours.
 import { overlapOf, type Area } from './area';
-import { rampColour, randomColour, type Colour } from './colours';
+import { boxColour, randomColour, type Colour } from './colours';
 import type { ColourBy, Show } from './state';
 import { boxOf, isLeaf, probabilityOf, siblingOf, type Tree } from './tree';
 
@@ -48,13 +48,13 @@ export function nodeColours(tree: Tree, by: ColourBy, area: Area | null, visits:
   switch (by) {
     case 'depth':
       return {
-        colour: (node) => rampColour(0.25 + (0.75 * tree.level[node]) / Math.max(tree.maxLevel, 1)),
+        colour: (node) => boxColour(tree.level[node] / Math.max(tree.maxLevel, 1)),
         scale: { low: 0, high: tree.maxLevel, logarithmic: false, title: 'level' },
       };
     case 'measure': {
       const floor = 1e-6;
       return {
-        colour: (node) => rampColour(0.2 + 0.8 * (1 + Math.log10(Math.max(probabilityOf(tree, node), floor)) / 6)),
+        colour: (node) => boxColour(1 + Math.log10(Math.max(probabilityOf(tree, node), floor)) / 6),
         scale: { low: floor, high: 1, logarithmic: true, title: 'probability of being met' },
       };
     }
@@ -63,7 +63,7 @@ export function nodeColours(tree: Tree, by: ColourBy, area: Area | null, visits:
         colour: (node) => {
           const sibling = siblingOf(tree, node);
           const share = area && sibling >= 0 ? overlapOf(area, boxOf(tree, node), boxOf(tree, sibling), true).share : 0;
-          return rampColour(0.2 + 0.8 * share);
+          return boxColour(share);
         },
         scale: { low: 0, high: 1, logarithmic: false, title: area ? 'overlap with the sibling, as the area sees it' : 'overlap needs an area' },
       };
@@ -71,7 +71,7 @@ export function nodeColours(tree: Tree, by: ColourBy, area: Area | null, visits:
       let most = 1;
       if (visits) for (const node of nodes) most = Math.max(most, visits[node]);
       return {
-        colour: (node) => rampColour(0.2 + (0.8 * (visits?.[node] ?? 0)) / most),
+        colour: (node) => boxColour((visits?.[node] ?? 0) / most),
         scale: { low: 0, high: most, logarithmic: false, title: visits ? 'rays that meet the box' : 'cast rays to see visits' },
       };
     }

@@ -12,6 +12,11 @@ const UPS: Vec[] = [
   [0, 0, 1],
 ];
 
+/** Narrow pictures show as much from side to side as square ones. */
+function verticalField(aspect: number): number {
+  return (2 * Math.atan(Math.tan((FIELD_OF_VIEW * Math.PI) / 360) / Math.min(1, aspect)) * 180) / Math.PI;
+}
+
 export function canUseWebGL(): boolean {
   try {
     return document.createElement('canvas').getContext('webgl2') !== null;
@@ -30,6 +35,7 @@ export class Stage {
   private paneCount = 1;
   private wanted = false;
   private resting = 0;
+  private held = false;
   private area: Area | null = null;
   moving = false;
   /** Milliseconds that the last picture took. */
@@ -72,14 +78,24 @@ export class Stage {
     controls.target.set(...target);
     controls.enableDamping = false;
     controls.zoomToCursor = true;
+    controls.addEventListener('start', () => (this.held = true));
+    controls.addEventListener('end', () => {
+      this.held = false;
+      this.restSoon();
+    });
     controls.addEventListener('change', () => {
       this.setMoving(true);
-      clearTimeout(this.resting);
-      this.resting = setTimeout(() => this.setMoving(false), 250) as unknown as number;
+      this.restSoon();
       this.requestDraw();
       this.onCamera();
     });
     return controls;
+  }
+
+  /** Nothing is drawn in full while the pointer holds the scene. */
+  private restSoon(): void {
+    clearTimeout(this.resting);
+    if (!this.held) this.resting = setTimeout(() => this.setMoving(false), 250) as unknown as number;
   }
 
   private setMoving(moving: boolean): void {
@@ -157,6 +173,7 @@ export class Stage {
     const aspect = clientWidth / this.paneCount / clientHeight;
     if (this.camera instanceof THREE.PerspectiveCamera) {
       this.camera.aspect = aspect;
+      this.camera.fov = verticalField(aspect);
       if (this.area) {
         const half = Math.max(this.area.half[1], this.area.half[0] / aspect);
         this.camera.fov = Math.min(170, (2 * Math.atan(half) * 180) / Math.PI);

@@ -1,7 +1,7 @@
 // Costs of pixels as the area sees the scene: two trees under a wiper, beside each other, or their difference.
 import type { App } from '../app';
 import type { Area } from '../area';
-import { divergingColour, rampColour, rampGradient, type Colour } from '../colours';
+import { divergingColour, gradient, rampColour, type Colour } from '../colours';
 import { button, checkbox, element, numberText, save, select, svg } from '../dom';
 import { costImage, highPercentile, histogram, meanOf, type CostImage } from '../heat';
 import type { CostMode } from '../state';
@@ -145,7 +145,7 @@ export class CostView {
   private showScale(low: number, high: number, diverging: boolean): void {
     const title = diverging ? 'right minus left, per ray' : 'cost per ray; the scale ends where 99 % of the pixels lie';
     const ends = element('div', { class: 'ends' }, element('span', {}, numberText(low)), element('span', {}, title), element('span', {}, numberText(high)));
-    this.scale.replaceChildren(element('div', { class: 'bar', style: `background:${rampGradient(diverging)}` }), ends);
+    this.scale.replaceChildren(element('div', { class: 'bar', style: `background:${diverging ? gradient(divergingColour, -1, 1) : gradient(rampColour, 0, 1)}` }), ends);
   }
 
   private point(event: PointerEvent): void {

@@ -1,6 +1,6 @@
 // Which trees are drawn, which of their boxes, and in which colours; two of them beside each other.
 import type { App } from '../app';
-import { rampGradient } from '../colours';
+import { boxColour, gradient } from '../colours';
 import { checkbox, element, numberText, select, slider, table } from '../dom';
 import type { ColourBy, Show, State } from '../state';
 
@@ -43,7 +43,7 @@ function legend(app: App): HTMLElement {
   return element(
     'div',
     { class: 'legend' },
-    element('div', { class: 'bar', style: `background:${rampGradient()}` }),
+    element('div', { class: 'bar', style: `background:${gradient(boxColour, 0, 1)}` }),
     element('div', { class: 'ends' }, element('span', {}, numberText(scale.low)), element('span', {}, scale.title), element('span', {}, numberText(scale.high))),
   );
 }
@@ -60,6 +60,8 @@ export function treePanel(app: App): HTMLElement {
   const filled = checkbox('opaque boxes', (on) => set({ filled: on }));
   const shown = element('p', { class: 'note', id: 'boxes-shown' });
   const below = element('div');
+  const values = element('div');
+  const all = element('details', {}, element('summary', {}, 'All values of the tree'), values);
   app.onChange(() => {
     const { state } = app;
     tree.set(String(state.tree));
@@ -74,7 +76,9 @@ export function treePanel(app: App): HTMLElement {
     level.row.hidden = state.show !== 'level';
     const { nodes, total } = app.panes[0].shown;
     shown.textContent = nodes.length < total ? `${numberText(nodes.length)} of ${numberText(total)} boxes are drawn: the largest.` : `${numberText(total)} boxes`;
-    below.replaceChildren(legend(app), valueTable(app));
+    below.replaceChildren(legend(app));
+    values.replaceChildren(valueTable(app));
+    if (state.compare) all.open = true;
   });
-  return element('div', {}, tree.row, compare.row, other.row, show.row, level.row, colour.row, filled.row, shown, below);
+  return element('div', {}, tree.row, compare.row, other.row, show.row, level.row, colour.row, filled.row, shown, below, all);
 }
