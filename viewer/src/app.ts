@@ -1,6 +1,6 @@
 // What the page holds and does; panels and keys only ask and tell it.
 import type { Area } from './area';
-import { randomColour, ROLE_COLOURS } from './colours';
+import { inkColour, randomColour, ROLE_COLOURS, type Colour } from './colours';
 import { castRays, measureRays, type RayStats } from './cost';
 import type { ViewData } from './data';
 import { boxes, limitBoxes } from './layers/box_layer';
@@ -99,7 +99,7 @@ export class App {
     if (light >= 0 && this.data.areas[light]) this.stage.seeFrom(this.data.areas[light]);
     else if (this.state.up !== 1) this.stage.setUp(this.state.up);
     else this.stage.fit();
-    if (camera.length === 6) this.stage.restore(camera);
+    this.stage.restore(camera);
     await this.apply(new Set(Object.keys(this.state) as Key[]));
     this.whileMoving(true); // what a drag needs is there from the beginning
     this.stage.draw();
@@ -117,7 +117,7 @@ export class App {
     if (any('rays', 'seed', 'cast', 'tree', 'other', 'compare')) this.applyRays();
     if (any('tree', 'other', 'compare', 'show', 'level', 'colour', 'filled') || (any('rays', 'seed', 'cast') && this.state.colour === 'visits'))
       this.applyBoxes();
-    if (any('node', 'otherNode', 'tree', 'other', 'compare')) this.applyNodes();
+    if (any('node', 'otherNode', 'tree', 'other', 'compare', 'theme')) this.applyNodes();
     if (!(changed.size === 1 && changed.has('camera'))) this.tell();
     this.stage.requestDraw();
   }
@@ -158,7 +158,7 @@ export class App {
     if (top === 'wireframe' || top === 'both') this.topGroup.add(boxes(list, { filled: false, opacity: 1 }));
     const chosen = this.top.leaves[cell];
     if (chosen && top !== 'none')
-      this.topGroup.add(boxes({ count: 1, box: () => [...chosen.box.lo, ...chosen.box.hi], colour: () => ROLE_COLOURS.node }, { filled: false, opacity: 1, onTop: true }));
+      this.topGroup.add(boxes({ count: 1, box: () => [...chosen.box.lo, ...chosen.box.hi], colour: inkColour }, { filled: false, opacity: 1, onTop: true }));
   }
 
   private applyBoxes(): void {
@@ -199,19 +199,19 @@ export class App {
 
   /** Parent green, left child red, right one blue; their triangles magenta and cyan, a leaf's yellow. */
   private drawNode(pane: Pane, tree: Tree, node: number): void {
-    const box = (at: number, colour: keyof typeof ROLE_COLOURS): void => {
+    const box = (at: number, colour: Colour): void => {
       const { lo, hi } = boxOf(tree, at);
-      pane.nodeGroup.add(boxes({ count: 1, box: () => [...lo, ...hi], colour: () => ROLE_COLOURS[colour] }, { filled: false, opacity: 1, onTop: true }));
+      pane.nodeGroup.add(boxes({ count: 1, box: () => [...lo, ...hi], colour: () => colour }, { filled: false, opacity: 1, onTop: true }));
     };
-    if (tree.parent[node] >= 0) box(tree.parent[node], 'parent');
-    box(node, 'node');
+    if (tree.parent[node] >= 0) box(tree.parent[node], ROLE_COLOURS.parent);
+    box(node, inkColour());
     if (isLeaf(tree, node)) {
       pane.nodeGroup.add(this.meshLayer.highlight(trianglesBelow(tree, node), ROLE_COLOURS.leafTriangles));
       return;
     }
     const left = tree.first[node];
-    box(left, 'left');
-    box(left + 1, 'right');
+    box(left, ROLE_COLOURS.left);
+    box(left + 1, ROLE_COLOURS.right);
     pane.nodeGroup.add(this.meshLayer.highlight(trianglesBelow(tree, left), ROLE_COLOURS.leftTriangles));
     pane.nodeGroup.add(this.meshLayer.highlight(trianglesBelow(tree, left + 1), ROLE_COLOURS.rightTriangles));
   }
@@ -272,7 +272,7 @@ export class App {
       counts.push(visited.length);
       const list = { count: visited.length, box: (k: number) => tree.boxes.subarray(6 * visited[k], 6 * visited[k] + 6), colour: () => ROLE_COLOURS.ray };
       pane.visitGroup.add(boxes(list, { filled: false, opacity: 1, onTop: true }));
-      pane.visitGroup.add(segments([{ ...this.raySegment(index), colour: ROLE_COLOURS.node }], true));
+      pane.visitGroup.add(segments([{ ...this.raySegment(index), colour: inkColour() }], true));
     }
     this.stage.requestDraw();
     return counts;

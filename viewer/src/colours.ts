@@ -52,7 +52,6 @@ export const ROLE_COLOURS = {
   parent: [64, 200, 64],
   left: [230, 60, 60],
   right: [70, 110, 255],
-  node: [255, 255, 255],
   leftTriangles: [255, 0, 255],
   rightTriangles: [0, 255, 255],
   leafTriangles: [255, 255, 0],
@@ -61,3 +60,9 @@ export const ROLE_COLOURS = {
 } satisfies Record<string, Colour>;
 
 export const css = (colour: Colour): string => `rgb(${colour.join()})`;
+
+/** Of what is chosen: dark on light, light on dark. */
+export function inkColour(): Colour {
+  const parts = getComputedStyle(document.documentElement).getPropertyValue('--ink').trim();
+  return [1, 3, 5].map((at) => parseInt(parts.slice(at, at + 2), 16)) as Colour;
+}

@@ -148,13 +148,15 @@ export class Stage {
     this.use(camera, target);
   }
 
+  /** Position, target and zoom. */
   cameraNumbers(): number[] {
-    const short = (x: number): number => Number(x.toPrecision(6));
-    return [...this.camera.position.toArray(), ...this.controls.target.toArray()].map(short);
+    return [...this.camera.position.toArray(), ...this.controls.target.toArray(), this.camera.zoom];
   }
 
   restore(numbers: number[]): void {
-    if (numbers.length !== 6) return;
+    if (numbers.length !== 7) return;
+    this.camera.zoom = numbers[6] > 0 ? numbers[6] : 1;
+    this.camera.updateProjectionMatrix();
     this.camera.position.set(numbers[0], numbers[1], numbers[2]);
     this.controls.target.set(numbers[3], numbers[4], numbers[5]);
     this.controls.update();

@@ -43,7 +43,7 @@ export interface State {
   wiper: number;
   /** The area that the camera stands in for, or -1. */
   light: number;
-  /** Position and target. */
+  /** Position, target and zoom. */
   camera: number[];
   theme: 'auto' | 'light' | 'dark';
 }

@@ -52,6 +52,27 @@ function pixelsOf(tab, colour) {
   }, colour);
 }
 
+/** The share of pixels in which the picture differs from an earlier one. */
+function changedShare(tab, earlier) {
+  return tab.evaluate(async (address) => {
+    const stage = document.querySelector('.stage canvas');
+    const image = new Image();
+    image.src = address;
+    await image.decode();
+    const [now, before] = [stage, image].map((source) => {
+      const copy = document.createElement('canvas');
+      copy.width = stage.width;
+      copy.height = stage.height;
+      const context = copy.getContext('2d', { willReadFrequently: true });
+      context.drawImage(source, 0, 0);
+      return context.getImageData(0, 0, copy.width, copy.height).data;
+    });
+    let changed = 0;
+    for (let i = 0; i < now.length; i += 4) if (now[i] !== before[i] || now[i + 1] !== before[i + 1] || now[i + 2] !== before[i + 2]) changed += 1;
+    return (4 * changed) / now.length;
+  }, earlier);
+}
+
 const numbers = (tab, selector) =>
   tab.evaluate((name) => Object.fromEntries([...document.querySelectorAll(`${name} tbody tr`)].map((row) => [row.children[0].textContent, [...row.children].slice(1).map((cell) => cell.textContent)])), selector);
 const rayNumbers = (tab) =>
@@ -71,6 +92,11 @@ async function checkScene(tab) {
   const stage = await tab.locator('.stage canvas').boundingBox();
   const middle = [stage.x + stage.width / 2, stage.y + stage.height / 2];
   const place = () => tab.evaluate(() => document.querySelector('.stage canvas').toDataURL());
+  const moved = async (earlier, what) => {
+    const share = await changedShare(tab, earlier);
+    assert.ok(share > 0.01, `${what}: ${share} of the picture changed`);
+    return place();
+  };
   const first = await place();
   await tab.mouse.move(...middle);
   await drawn(tab, async () => {
@@ -78,20 +104,18 @@ async function checkScene(tab) {
     await tab.mouse.move(middle[0] + 90, middle[1] + 20, { steps: 3 });
     await tab.mouse.up();
   });
-  const orbited = await place();
-  assert.notEqual(orbited, first, 'dragging orbits');
+  const orbited = await moved(first, 'dragging orbits');
   await drawn(tab, () => tab.mouse.wheel(0, -300));
-  const zoomed = await place();
-  assert.notEqual(zoomed, orbited, 'the wheel zooms');
+  const zoomed = await moved(orbited, 'the wheel zooms');
   await drawn(tab, async () => {
     await tab.mouse.down({ button: 'right' });
     await tab.mouse.move(middle[0] + 40, middle[1] + 60, { steps: 3 });
     await tab.mouse.up({ button: 'right' });
   });
-  assert.notEqual(await place(), zoomed, 'the right button pans');
+  await moved(zoomed, 'the right button pans');
   await drawn(tab, () => tab.getByRole('button', { name: 'Fit' }).click());
   await tab.waitForTimeout(400);
-  assert.equal(await place(), first, 'Fit goes back');
+  assert.ok((await changedShare(tab, first)) < 0.002, 'Fit goes back');
   const edges = await pixelsOf(tab, [40, 44, 52]);
   await drawn(tab, () => tab.getByLabel('wireframe', { exact: true }).check());
   assert.ok((await pixelsOf(tab, [40, 44, 52])) > edges + 1000, 'the wireframe is drawn');
@@ -100,12 +124,12 @@ async function checkScene(tab) {
   const grey = await pixelsOf(tab, [160, 165, 172]);
   await drawn(tab, () => choose(tab, 'Section across', '2'));
   await drawn(tab, () => tab.getByLabel('at', { exact: true }).fill('2'));
-  assert.ok((await pixelsOf(tab, [160, 165, 172])) !== grey, 'the section cuts the scene open');
+  assert.ok((await pixelsOf(tab, [160, 165, 172])) < 0.7 * grey || (await pixelsOf(tab, [160, 165, 172])) > 1.3 * grey, 'the section cuts the scene open');
   await shot(tab, 'section');
   await drawn(tab, () => choose(tab, 'Section across', '0'));
   await drawn(tab, () => choose(tab, 'Up axis', '2'));
   await tab.waitForTimeout(400);
-  assert.notEqual(await place(), first, 'another axis is up');
+  await moved(first, 'another axis is up');
   await drawn(tab, () => choose(tab, 'Up axis', '1'));
   await drawn(tab, () => tab.getByLabel('shaded', { exact: true }).uncheck());
   assert.ok((await pixelsOf(tab, [160, 165, 172])) < 200, 'surfaces can be left out');
@@ -126,10 +150,12 @@ async function checkAreas(tab) {
   assert.equal(await items.locator('input:checked').count(), 1, 'one area is isolated');
   assert.match(await tab.locator('.pane-names').innerText(), /SAH\+LSPH/);
   await drawn(tab, () => items.nth(0).getByRole('button', { name: 'see from it' }).click());
+  assert.ok(await tab.getByRole('button', { name: 'back' }).isEnabled());
+  const fromPlane = await tab.evaluate(() => document.querySelector('.stage canvas').toDataURL());
   await shot(tab, 'see-from-plane');
   await drawn(tab, () => items.nth(7).getByRole('button', { name: 'see from it' }).click());
+  assert.ok((await changedShare(tab, fromPlane)) > 0.05, 'each area sees its own picture');
   await shot(tab, 'see-from-point');
-  assert.match(tab.url() + (await tab.evaluate(() => location.hash)), /light=|./);
   await drawn(tab, () => tab.getByRole('button', { name: 'back' }).click());
   await drawn(tab, () => tab.getByRole('button', { name: 'all', exact: true }).click());
   assert.equal(await items.locator('input:checked').count(), 8);
@@ -170,12 +196,12 @@ async function checkTrees(tab) {
 
 async function checkNode(tab) {
   await choose(tab, 'Boxes', 'none');
-  await tab.locator('.stage canvas').click({ position: { x: 480, y: 480 } });
+  await tab.locator('.stage canvas').click({ position: { x: 350, y: 490 } });
   await tab.locator('#node-numbers').waitFor();
   const leaf = await numbers(tab, '#node-numbers');
   assert.equal(leaf['Triangles'].length, 1, 'a click on a surface chooses its leaf');
   await tab.waitForTimeout(400);
-  assert.ok((await pixelsOf(tab, [255, 255, 0])) + (await pixelsOf(tab, [214, 214, 0])) + (await pixelsOf(tab, [180, 180, 0])) > 0, 'its triangles are yellow');
+  assert.ok((await pixelsOf(tab, [230, 230, 0])) > 20, 'its triangle is yellow');
   await shot(tab, 'leaf');
   await choose(tab, 'Boxes', 'level');
   await tab.locator('.stage canvas').click({ position: { x: 480, y: 480 } });
@@ -346,9 +372,9 @@ async function checkRest(tab) {
   await tab.goto(link);
   await tab.waitForFunction(() => document.documentElement.dataset.ready === 'true');
   await tab.waitForTimeout(500);
-  assert.match(await textOf(tab, '#boxes-shown'), /^32 boxes|^\d+ boxes/);
   assert.equal(await tab.getByLabel('Level', { exact: true }).inputValue(), '5', 'the link restores the level');
-  assert.equal(await tab.evaluate(() => document.querySelector('.stage canvas').toDataURL()), before, 'the link restores the picture');
+  const share = await changedShare(tab, before);
+  assert.ok(share < 0.002, `the link restores the picture, but for ${share} of its pixels`);
   const paper = () => tab.evaluate(() => getComputedStyle(document.body).backgroundColor);
   const light = await paper();
   await tab.keyboard.press('d');
@@ -359,7 +385,6 @@ async function checkRest(tab) {
 }
 
 function checkPageItself() {
-  spawnSync('true');
   const unit = spawnSync(process.execPath, [join(here, 'unit.mjs'), program, folder], { stdio: ['ignore', 'pipe', 'inherit'], encoding: 'utf8' });
   assert.equal(unit.status, 0, unit.stdout);
 }

@@ -128,7 +128,7 @@ export class MeshLayer {
   highlight(triangles: number[], colour: Colour): THREE.Mesh {
     const corners = new Uint32Array(3 * triangles.length);
     triangles.forEach((triangle, i) => corners.set(this.mesh.corners.subarray(3 * triangle, 3 * triangle + 3), 3 * i));
-    const result = new THREE.Mesh(this.geometry(corners), material(colour, 0.4, this.section));
+    const result = new THREE.Mesh(this.geometry(corners), material(colour, 0.75, this.section));
     result.frustumCulled = false;
     result.renderOrder = 1;
     return result;
