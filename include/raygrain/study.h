@@ -154,9 +154,9 @@ std::vector<StudyColumn> grid_columns();
 // --- Ready-made studies of the paper's evaluation. ---
 
 struct StudySources {
-  std::string scenes;             // the folder of the paper's models; empty or missing: what needs it is left out
-  std::vector<std::string> only;  // names of scenes; empty: all
-  size_t rays = 1000;             // per area
+  std::string scenes = {};             // the folder of the paper's models; empty or missing: what needs it is left out
+  std::vector<std::string> only = {};  // names of scenes; empty: all
+  size_t rays = 1000;                  // per area
   uint64_t seed = 1;
   bool quick = false;  // few rows of each kind: for tests
 };
