@@ -120,6 +120,10 @@ struct StudyRecipe {
   std::string combo, setting;
   Recipe recipe;
   bool reinsert = false;  // improve the finished tree by reinsertion under its own measure
+  /// In ray space, with the measure of a frame's xy area in place of the recipe's: of the frames that suit the area,
+  /// the one that predicts the least cost. The builder is the recipe's.
+  bool in_frame = false;
+  bool visible = false;  // sample rays, for recipes that have them, end at their first hit
 };
 
 /// Rays of each area: near-plane-uniform by default, `count` for each seed.
