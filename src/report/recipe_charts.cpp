@@ -13,6 +13,7 @@ namespace raygrain {
 namespace {
 
 constexpr size_t kMostGroups = 40;  // on one panel
+constexpr size_t kMostDots = 6;     // on one line: more recipes are told apart by numbers
 
 struct Payment {
   const char* series;
@@ -85,7 +86,7 @@ Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
 ChartPanel ratio_dots(const StudyResults& study, const std::string& baseline, const Payment& payment,
                       const RowText& group, std::vector<std::string> groups) {
   ChartPanel panel{.title = std::string(payment.series) + " as a multiple of " + baseline + "'s",
-                   .kind = ChartKind::kDots,
+                   .kind = recipes_of(study).size() > kMostDots ? ChartKind::kMatrix : ChartKind::kDots,
                    .y = {"geometric mean over tests of recipe / " + baseline, true},
                    .groups = std::move(groups),
                    .series = coloured(recipes_of(study)),
@@ -120,6 +121,64 @@ std::string winners(const ChartPanel& panel) {
   std::string text;
   for (const auto& [recipe, count] : sorted) text += fmt::format("{}{} in {}", text.empty() ? "" : ", ", recipe, count);
   return text;
+}
+
+/// Pruned cost first, then what it may come from: one tiny child beside one nearly as large as its parent.
+Chart shape_chart(const StudyResults& study, const std::string& baseline) {
+  Chart chart{.title = "Shape of the trees: a small child and a large one"};
+  const RowValue small = column_value("small_child_ratio"), large = column_value("large_child_ratio"),
+                 level = column_value("max_level");
+  if (!any_measured(study.rows, level)) return chart;
+  const auto recipe = [](const ResultRow& row) { return row.recipe; };
+  ChartPanel paid{.title = "What users pay: pruned cost as a multiple of " + baseline + "'s",
+                  .kind = ChartKind::kRanking,
+                  .y = {"geometric mean over tests of recipe / " + baseline},
+                  .groups = recipes_of(study),
+                  .series = {{"pruned cost", "#d9480f"}},
+                  .reference = 1};
+  for (const Ranked& r : ranking(study, baseline, column_value("pruned_cost")))
+    paid.measured.push_back({.series = "pruned cost",
+                             .group = r.recipe,
+                             .y = r.ratio.mean,
+                             .low = r.ratio.low,
+                             .high = r.ratio.high,
+                             .count = r.ratio.count});
+  chart.panels.push_back(std::move(paid));
+  if (any_measured(study.rows, small)) {
+    ChartPanel children{.title = "Measure of the smaller and the larger child, per parent's",
+                        .kind = ChartKind::kDots,
+                        .y = {"mean over inner nodes and tests"},
+                        .groups = recipes_of(study),
+                        .series = {{"smaller child", "#2b7bba"}, {"larger child", "#d9480f"}}};
+    children.measured = group_means(
+        study.rows, recipe, [](const ResultRow&) { return "smaller child"; }, small);
+    for (ChartPoint& point : group_means(
+             study.rows, recipe, [](const ResultRow&) { return "larger child"; }, large))
+      children.measured.push_back(std::move(point));
+    chart.panels.push_back(std::move(children));
+  }
+  ChartPanel depth{.title = "Depth of the deepest leaf",
+                   .kind = ChartKind::kRanking,
+                   .y = {"mean number of levels"},
+                   .groups = recipes_of(study),
+                   .series = {{"deepest leaf", "#868e96"}}};
+  depth.measured = group_means(
+      study.rows, recipe, [](const ResultRow&) { return "deepest leaf"; }, level);
+  chart.panels.push_back(std::move(depth));
+
+  const double pah = mean_of(rows_of_recipe(study.rows, "PAH+LSPH"), level),
+               sah = mean_of(rows_of_recipe(study.rows, "SAH+LSPH"), level);
+  if (std::isnan(pah) || std::isnan(sah)) {
+    chart.finding = "The deeper a tree, the smaller its smaller children.";
+    return chart;
+  }
+  chart.label = "Section 9.3";
+  chart.verdict = pah > sah ? Verdict::kConfirms : Verdict::kContradicts;
+  chart.finding = fmt::format(
+      "With PAH+LSPH {}; its trees are {} levels deep in the mean, those of SAH+LSPH {}, where the paper says that "
+      "PAH's are deeper.",
+      user_sentence(study, "PAH+LSPH", "SAH+LSPH"), short_number(pah), short_number(sah));
+  return chart;
 }
 
 Chart group_chart(const StudyResults& study, const std::string& baseline, const std::string& title,
@@ -267,6 +326,7 @@ std::vector<Chart> recipe_charts(const StudyResults& all) {
   add(
       "By scene", [](const ResultRow& row) { return row.scene; }, scene_names(study.rows));
   charts.push_back(prediction_chart(all));
+  charts.push_back(shape_chart(study, baseline));
   charts.push_back(build_chart(study, baseline));
   std::erase_if(charts, [](const Chart& chart) { return chart.panels.empty(); });
   return charts;
