@@ -15,6 +15,7 @@ export function matrixParts(panel: Panel, options: SpecOptions): { height: numbe
       const doublings = Math.log2(point.y! / reference);
       return { ...rowOf(point, 'measured here'), doublings: Math.max(-MOST, Math.min(MOST, doublings)) };
     });
+  const roomy = options.width / Math.max(1, panel.groups.length) > 90;
   const names = panel.series.map((series) => series.name);
   const position = {
     x: {
@@ -27,7 +28,8 @@ export function matrixParts(panel: Panel, options: SpecOptions): { height: numbe
         orient: 'top',
         domain: false,
         ticks: false,
-        labelAngle: panel.groups.length > 6 || options.narrow ? -40 : 0,
+        labelAngle: roomy ? 0 : -40,
+        labelOffset: roomy ? 0 : 8,
         labelLimit: 160,
       },
     },

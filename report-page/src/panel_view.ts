@@ -117,7 +117,7 @@ export class PanelView {
       panel.published.length > 0 && element('small', {}, PUBLISHED),
       buttons,
     );
-    this.node = element('figure', { class: 'panel' }, caption, this.box, values);
+    this.node = element('figure', { class: panel.kind === 'matrix' ? 'panel wide' : 'panel' }, caption, this.box, values);
   }
 
   /** Draws it, again where the width asks for another form. */

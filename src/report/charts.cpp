@@ -162,6 +162,16 @@ std::vector<ChartPanel> user_bars(std::span<const ResultRow> rows, const std::ve
   return panels;
 }
 
+std::vector<RankedRecipe> ranking(std::span<const ResultRow> rows, const std::string& baseline, const RowValue& value) {
+  std::vector<RankedRecipe> ranked;
+  for (const std::string& recipe : recipe_names(rows))
+    if (const PairedRatio ratio = paired_ratio(rows, recipe, baseline, value); ratio.count > 0)
+      ranked.push_back({recipe, ratio});
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const RankedRecipe& a, const RankedRecipe& b) { return a.ratio.mean < b.ratio.mean; });
+  return ranked;
+}
+
 std::string short_number(double value) {
   if (std::isnan(value)) return "-";
   if (value == 0 || std::abs(value) >= 1e6 || std::abs(value) < 1e-4) return fmt::format("{:.3g}", value);

@@ -30,26 +30,6 @@ std::vector<Payment> payments(const StudyResults& study) {
   return all;
 }
 
-std::vector<std::string> recipes_of(const StudyResults& study) {
-  return recipe_names(study.rows);
-}
-
-struct Ranked {
-  std::string recipe;
-  PairedRatio ratio;
-};
-
-/// Recipes by the ratio of what users pay, the best first.
-std::vector<Ranked> ranking(const StudyResults& study, const std::string& baseline, const RowValue& value) {
-  std::vector<Ranked> ranked;
-  for (const std::string& recipe : recipes_of(study))
-    if (const PairedRatio ratio = paired_ratio(study.rows, recipe, baseline, value); ratio.count > 0)
-      ranked.push_back({recipe, ratio});
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const Ranked& a, const Ranked& b) { return a.ratio.mean < b.ratio.mean; });
-  return ranked;
-}
-
 Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
   Chart chart{.title = "All recipes against " + baseline};
   ChartPanel panel{.title = "Paid per ray, as a multiple of " + baseline + "'s",
@@ -58,11 +38,11 @@ Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
                    .reference = 1};
   const std::vector<Payment> paid = payments(study);
   if (paid.empty()) return chart;
-  const std::vector<Ranked> ranked = ranking(study, baseline, paid.front().value);
-  for (const Ranked& r : ranked) panel.groups.push_back(r.recipe);
+  const std::vector<RankedRecipe> ranked = ranking(study.rows, baseline, paid.front().value);
+  for (const RankedRecipe& r : ranked) panel.groups.push_back(r.recipe);
   for (const Payment& payment : paid) {
     panel.series.push_back({payment.series, payment.colour});
-    for (const Ranked& r : ranking(study, baseline, payment.value))
+    for (const RankedRecipe& r : ranking(study.rows, baseline, payment.value))
       panel.measured.push_back({.series = payment.series,
                                 .group = r.recipe,
                                 .y = r.ratio.mean,
@@ -71,7 +51,7 @@ Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
                                 .count = r.ratio.count});
   }
   if (ranked.empty()) return chart;
-  const Ranked& best = ranked.front();
+  const RankedRecipe& best = ranked.front();
   chart.finding = best.recipe == baseline
                       ? fmt::format("No recipe has a lower {} than {} over {} tests.", paid.front().series, baseline,
                                     best.ratio.count)
@@ -86,10 +66,10 @@ Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
 ChartPanel ratio_dots(const StudyResults& study, const std::string& baseline, const Payment& payment,
                       const RowText& group, std::vector<std::string> groups) {
   ChartPanel panel{.title = std::string(payment.series) + " as a multiple of " + baseline + "'s",
-                   .kind = recipes_of(study).size() > kMostDots ? ChartKind::kMatrix : ChartKind::kDots,
+                   .kind = recipe_names(study.rows).size() > kMostDots ? ChartKind::kMatrix : ChartKind::kDots,
                    .y = {"geometric mean over tests of recipe / " + baseline, true},
                    .groups = std::move(groups),
-                   .series = coloured(recipes_of(study)),
+                   .series = coloured(recipe_names(study.rows)),
                    .reference = 1};
   for (const std::string& name : panel.groups) {
     const std::vector<ResultRow> here = filtered(study.rows, [&](const ResultRow& row) { return group(row) == name; });
@@ -119,66 +99,9 @@ std::string winners(const ChartPanel& panel) {
   std::vector<std::pair<std::string, size_t>> sorted(wins.begin(), wins.end());
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.second > b.second; });
   std::string text;
-  for (const auto& [recipe, count] : sorted) text += fmt::format("{}{} in {}", text.empty() ? "" : ", ", recipe, count);
+  for (const auto& [recipe, count] : sorted)
+    text += fmt::format("{}with {} in {}", text.empty() ? "" : ", ", recipe, count);
   return text;
-}
-
-/// Pruned cost first, then what it may come from: one tiny child beside one nearly as large as its parent.
-Chart shape_chart(const StudyResults& study, const std::string& baseline) {
-  Chart chart{.title = "Shape of the trees: a small child and a large one"};
-  const RowValue small = column_value("small_child_ratio"), large = column_value("large_child_ratio"),
-                 level = column_value("max_level");
-  if (!any_measured(study.rows, level)) return chart;
-  const auto recipe = [](const ResultRow& row) { return row.recipe; };
-  ChartPanel paid{.title = "What users pay: pruned cost as a multiple of " + baseline + "'s",
-                  .kind = ChartKind::kRanking,
-                  .y = {"geometric mean over tests of recipe / " + baseline},
-                  .groups = recipes_of(study),
-                  .series = {{"pruned cost", "#d9480f"}},
-                  .reference = 1};
-  for (const Ranked& r : ranking(study, baseline, column_value("pruned_cost")))
-    paid.measured.push_back({.series = "pruned cost",
-                             .group = r.recipe,
-                             .y = r.ratio.mean,
-                             .low = r.ratio.low,
-                             .high = r.ratio.high,
-                             .count = r.ratio.count});
-  chart.panels.push_back(std::move(paid));
-  if (any_measured(study.rows, small)) {
-    ChartPanel children{.title = "Measure of the smaller and the larger child, per parent's",
-                        .kind = ChartKind::kDots,
-                        .y = {"mean over inner nodes and tests"},
-                        .groups = recipes_of(study),
-                        .series = {{"smaller child", "#2b7bba"}, {"larger child", "#d9480f"}}};
-    children.measured = group_means(
-        study.rows, recipe, [](const ResultRow&) { return "smaller child"; }, small);
-    for (ChartPoint& point : group_means(
-             study.rows, recipe, [](const ResultRow&) { return "larger child"; }, large))
-      children.measured.push_back(std::move(point));
-    chart.panels.push_back(std::move(children));
-  }
-  ChartPanel depth{.title = "Depth of the deepest leaf",
-                   .kind = ChartKind::kRanking,
-                   .y = {"mean number of levels"},
-                   .groups = recipes_of(study),
-                   .series = {{"deepest leaf", "#868e96"}}};
-  depth.measured = group_means(
-      study.rows, recipe, [](const ResultRow&) { return "deepest leaf"; }, level);
-  chart.panels.push_back(std::move(depth));
-
-  const double pah = mean_of(rows_of_recipe(study.rows, "PAH+LSPH"), level),
-               sah = mean_of(rows_of_recipe(study.rows, "SAH+LSPH"), level);
-  if (std::isnan(pah) || std::isnan(sah)) {
-    chart.finding = "The deeper a tree, the smaller its smaller children.";
-    return chart;
-  }
-  chart.label = "Section 9.3";
-  chart.verdict = pah > sah ? Verdict::kConfirms : Verdict::kContradicts;
-  chart.finding = fmt::format(
-      "With PAH+LSPH {}; its trees are {} levels deep in the mean, those of SAH+LSPH {}, where the paper says that "
-      "PAH's are deeper.",
-      user_sentence(study, "PAH+LSPH", "SAH+LSPH"), short_number(pah), short_number(sah));
-  return chart;
 }
 
 Chart group_chart(const StudyResults& study, const std::string& baseline, const std::string& title,
@@ -187,59 +110,8 @@ Chart group_chart(const StudyResults& study, const std::string& baseline, const 
   for (const Payment& payment : payments(study))
     chart.panels.push_back(ratio_dots(study, baseline, payment, group, groups));
   if (!chart.panels.empty())
-    chart.finding = fmt::format("Lowest {} in how many of {}: {}.", payments(study).front().series, groups.size(),
+    chart.finding = fmt::format("Of {} groups the {} is lowest {}.", groups.size(), payments(study).front().series,
                                 winners(chart.panels.front()));
-  return chart;
-}
-
-double prediction_error(const ResultRow& row) {
-  const double own = row.number("estimated_cost");
-  const double estimate = std::isnan(own) ? row.number("estimated_pah") : own;
-  return std::abs(row.number("real_cost") / estimate - 1);
-}
-
-/// Errors by recipe and by what was shot: matched rays are those that a measure assumes.
-Chart prediction_chart(const StudyResults& study) {
-  Chart chart{.title = "How well trees predict their cost"};
-  if (!any_measured(study.rows, prediction_error)) return chart;
-  const auto tests = [](const ResultRow& row) {
-    const std::string kind = row.kind.empty() ? "all tests" : row.kind + " areas";
-    return kind + (row.text("ray_set").empty() ? "" : ", " + std::string(row.text("ray_set")) + " rays");
-  };
-  if (any_measured(study.rows, column_value("pruned_cost"))) {
-    ChartPanel paid{.title = "What users pay: pruned cost as a share of the predicted cost",
-                    .kind = ChartKind::kRanking,
-                    .y = {"mean of pruned cost / predicted cost"},
-                    .reference = 1};
-    paid.groups = recipes_of(study);
-    paid.series = coloured(distinct(study.rows, tests));
-    paid.measured = group_means(
-        study.rows, [](const ResultRow& row) { return row.recipe; }, tests,
-        [](const ResultRow& row) {
-          const double own = row.number("estimated_cost");
-          return row.number("pruned_cost") / (std::isnan(own) ? row.number("estimated_pah") : own);
-        });
-    chart.panels.push_back(std::move(paid));
-  }
-  ChartPanel panel{.title = "Error of the prediction against the full-traversal cost",
-                   .kind = ChartKind::kRanking,
-                   .y = {"mean of |real - predicted| / predicted"}};
-  panel.groups = recipes_of(study);
-  panel.series = coloured(distinct(study.rows, tests));
-  panel.measured = group_means(
-      study.rows, [](const ResultRow& row) { return row.recipe; }, tests, prediction_error);
-  std::string text;
-  for (const ChartSeries& series : panel.series) {
-    const std::vector<ResultRow> rows = filtered(
-        study.rows, [&](const ResultRow& row) { return tests(row) == series.name && row.recipe.starts_with("PAH"); });
-    if (any_measured(rows, prediction_error))
-      text +=
-          fmt::format("{}{} for {}", text.empty() ? "" : ", ", percent(mean_of(rows, prediction_error)), series.name);
-  }
-  chart.finding = text.empty()
-                      ? "No recipe uses PAH."
-                      : "Trees of PAH mispredict by " + text + "; the paper gives 2 % for planes and 12 % for points.";
-  chart.panels.push_back(std::move(panel));
   return chart;
 }
 
@@ -257,7 +129,7 @@ Chart fallback_chart(const StudyResults& study) {
   ChartPanel panel{.title = "Paid per ray, as a multiple of the global tree's cost",
                    .kind = ChartKind::kRanking,
                    .y = {"mean over tests"},
-                   .groups = recipes_of(study),
+                   .groups = recipe_names(study.rows),
                    .reference = 1};
   for (const Payment& payment : paid) {
     panel.series.push_back({payment.series, payment.colour});
@@ -292,10 +164,10 @@ Chart build_chart(const StudyResults& study, const std::string& baseline) {
                    .kind = ChartKind::kDots,
                    .y = {"geometric mean over tests of recipe / " + baseline, true},
                    .reference = 1};
-  const std::vector<Ranked> ranked = ranking(study, baseline, build);
+  const std::vector<RankedRecipe> ranked = ranking(study.rows, baseline, build);
   if (ranked.empty()) return chart;
   panel.series = {{"build time", "#1098ad"}};
-  for (const Ranked& r : ranked) {
+  for (const RankedRecipe& r : ranked) {
     panel.groups.push_back(r.recipe);
     panel.measured.push_back({.series = "build time",
                               .group = r.recipe,
@@ -314,7 +186,7 @@ Chart build_chart(const StudyResults& study, const std::string& baseline) {
 }  // namespace
 
 std::vector<Chart> recipe_charts(const StudyResults& all) {
-  if (recipes_of(all).size() < 2) return {};
+  if (recipe_names(all.rows).size() < 2) return {};
   const StudyResults study{all.name, all.id, main_rays(all.rows)};
   const std::string baseline = baseline_recipe(study);
   std::vector<Chart> charts{ranking_chart(study, baseline), fallback_chart(study)};
@@ -325,8 +197,8 @@ std::vector<Chart> recipe_charts(const StudyResults& all) {
   add("By kind of area and direction of rays", group_label, group_labels(study.rows));
   add(
       "By scene", [](const ResultRow& row) { return row.scene; }, scene_names(study.rows));
-  charts.push_back(prediction_chart(all));
-  charts.push_back(shape_chart(study, baseline));
+  charts.push_back(recipe_prediction_chart(all));
+  charts.push_back(tree_shape_chart(study, baseline));
   charts.push_back(build_chart(study, baseline));
   std::erase_if(charts, [](const Chart& chart) { return chart.panels.empty(); });
   return charts;
