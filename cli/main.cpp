@@ -128,9 +128,12 @@ Error unexpected_word(const CLI::App& app, const std::string& word) {
 Error usage_error(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& app = *deepest(program);
   // A word that nothing expects is the likelier mistake than what it leaves missing.
-  for (const CLI::App* level = &app; level; level = level->get_parent())
+  const CLI::App* level = &app;
+  do {
     if (const std::vector<std::string> extras = level->remaining(); !extras.empty())
       return unexpected_word(*level, extras.front());
+    level = level->get_parent();
+  } while (level != nullptr);
   std::string what = error.what();
   if (what == "A subcommand is required") what = "a command is required";
   return Error(ErrorCode::kUsage, full_name(app), what, "See " + full_name(app) + " --help");

@@ -144,6 +144,12 @@ struct BuildOptions {
   SpatialParameters spatial;
 };
 
+/// How a build is run: nothing that its tree depends on. See the fields of BuildOptions.
+struct BuildRun {
+  unsigned threads = 0;
+  std::function<bool(double done)> progress = {};
+};
+
 /// Figure 9: ratio <= excellent: satisfied; next quality >= threshold: try; ratio <= acceptable: satisfied; else fall
 /// back.
 SplitVerdict decide_split(const SplitState& state, const PaperParameters& parameters);

@@ -18,6 +18,7 @@
 #include "raygrain/mesh.h"
 #include "raygrain/orientation.h"
 #include "raygrain/ray.h"
+#include "raygrain/ray_frame.h"
 #include "raygrain/rays.h"
 #include "raygrain/refine.h"
 #include "raygrain/region.h"
