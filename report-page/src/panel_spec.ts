@@ -51,7 +51,7 @@ export function tooltip(panel: Panel): object[] {
 /** SI prefixes where plain numbers would be long. */
 function axisFormat(values: (number | null | undefined)[]): object {
   const sizes = values.filter((v): v is number => typeof v === 'number' && v > 0);
-  return Math.max(...sizes) >= 1e5 || Math.min(...sizes) < 1e-2 ? { format: '~s' } : {};
+  return Math.max(...sizes) >= 1e5 || Math.min(...sizes) < 1e-2 ? { format: '.3~s' } : {};
 }
 
 /** Ticks at the values themselves, where these are few and the axis is logarithmic. */
@@ -160,8 +160,9 @@ const CONFIG = {
 /** What is drawn in the axes of all kinds but the matrix. */
 function chartParts(panel: Panel, options: SpecOptions): { height: number; layer: object[] } {
   const { lying, position } = channels(panel, options);
-  const measured = panel.measured.filter((p) => p.y !== null).map((p) => rowOf(p, 'measured here'));
-  const published = panel.published.filter((p) => p.y !== null).map((p) => rowOf(p, 'published'));
+  const shown = (point: Point) => point.y !== null && (point.y > 0 || !panel.y.logarithmic);
+  const measured = panel.measured.filter(shown).map((point) => rowOf(point, 'measured here'));
+  const published = panel.published.filter(shown).map((point) => rowOf(point, 'published'));
   const names = panel.series.map((series) => series.name);
   const zoomed = panel.groups.length > 0 ? [lying ? 'x' : 'y'] : ['x', 'y'];
   const legend = {

@@ -121,9 +121,16 @@ double nanoseconds_per_ray(const ResultRow& row) {
 ChartPanel line_panel(std::span<const ResultRow> rows, const std::string& title, const RowText& series,
                       const std::pair<ChartAxis, RowValue>& x, const std::pair<ChartAxis, RowValue>& y) {
   ChartPanel panel{.title = title, .kind = ChartKind::kLines, .x = x.first, .y = y.first};
-  const std::vector<ResultRow> shown = filtered(
-      rows, [&](const ResultRow& row) { return std::isfinite(x.second(row)) && std::isfinite(y.second(row)); });
-  panel.series = coloured(distinct(shown, series));
+  const auto fits = [](const std::pair<ChartAxis, RowValue>& axis, const ResultRow& row) {
+    const double value = axis.second(row);
+    return std::isfinite(value) && (value > 0 || !axis.first.logarithmic);
+  };
+  const std::vector<ResultRow> shown =
+      filtered(rows, [&](const ResultRow& row) { return fits(x, row) && fits(y, row); });
+  // Colours as in the other panels of the chart, whose rows may have more values.
+  const std::vector<std::string> names = distinct(shown, series);
+  for (ChartSeries& s : coloured(distinct(rows, series)))
+    if (std::find(names.begin(), names.end(), s.name) != names.end()) panel.series.push_back(std::move(s));
   panel.measured = group_means(
       shown, [&](const ResultRow& row) { return fmt::format("{}", x.second(row)); }, series, y.second);
   for (ChartPoint& point : panel.measured) point.x = std::stod(std::exchange(point.group, {}));
