@@ -10,7 +10,7 @@ CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_
 
 BENCH ?= --quick
 
-.PHONY: help build demo bench bench-dependencies report-page report-page-test report-page-dependencies test test-full asan-test release-test tsan-test clang-test coverage format check-format tidy \
+.PHONY: help build demo study bench bench-dependencies report-page report-page-test report-page-dependencies test test-full asan-test release-test tsan-test clang-test coverage format check-format tidy \
         dependencies full-dependencies install clean
 
 help:            ## this list
@@ -37,6 +37,14 @@ bench: bench-dependencies ## against Embree on the same rays; BENCH="--json FILE
 
 demo: build      ## build, then compare the paper's heuristics on a built-in city under a low sun
 	@scripts/demo.sh $(RELEASE)/bin/raygrain build/demo
+
+SCENES ?= ../shared/scenes
+STUDIES ?= paper corrected
+
+study: build     ## the paper's evaluation, sound and corrected, and its report, into build/study; SCENES=DIR, STUDIES="published areas ..."
+	@for study in $(STUDIES); do \
+	  $(RELEASE)/bin/raygrain study $$study --scenes $(SCENES) --jobs $(JOBS) --out build/study/$$study || exit 1; done
+	@$(RELEASE)/bin/raygrain report $(STUDIES:%=build/study/%) --out build/study/report.html --markdown build/study/report.md
 
 report-page-dependencies:
 	@scripts/install-dependencies.sh report-page

@@ -190,13 +190,17 @@ std::string percent(double share) {
   return short_number(share * 100) + " %";
 }
 
+std::string counted(size_t count, std::string_view thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
 std::string user_sentence(const StudyResults& study, const std::string& recipe, const std::string& baseline) {
   const PairedRatio pruned = paired_ratio(study.rows, recipe, baseline, column_value("pruned_cost"));
   const PairedRatio time = paired_ratio(study.rows, recipe, baseline, nanoseconds_per_ray);
   if (pruned.count == 0) return {};
   std::string text = fmt::format("users pay {} times the pruned cost of {}", short_number(pruned.mean), baseline);
   if (time.count > 0) text += fmt::format(" and {} times its time", short_number(time.mean));
-  return text + fmt::format(" (geometric mean of {} test{})", pruned.count, pruned.count == 1 ? "" : "s");
+  return text + fmt::format(" (geometric mean of {})", counted(pruned.count, "test"));
 }
 
 Verdict verdict_of(size_t agreeing, size_t all) {

@@ -88,6 +88,8 @@ std::vector<ChartPanel> user_bars(std::span<const ResultRow> rows, const std::ve
 /// "1.35 times", "0.94 times"; three significant digits elsewhere: "0.0123", "12.3", "1234".
 std::string short_number(double value);
 std::string percent(double share);
+/// "1 test", "64 tests".
+std::string counted(size_t count, std::string_view thing);
 /// One sentence on what users pay: pruned cost, and time where it was measured, against the baseline.
 std::string user_sentence(const StudyResults& study, const std::string& recipe, const std::string& baseline);
 

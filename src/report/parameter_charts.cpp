@@ -82,9 +82,9 @@ Chart threshold_chart(const StudyResults& study, const std::string& baseline) {
       if (chart.panels.empty() && !(ratio.mean >= best)) {
         best = ratio.mean;
         chart.finding = fmt::format(
-            "Users pay least with quality {}, {}: {} times the pruned cost of the paper's parameters over {} tests.",
+            "Users pay least with quality {}, {}: {} times the pruned cost of the paper's parameters over {}.",
             plain_number(own.front().number("split_plane_quality_threshold")), pair(own.front()),
-            short_number(ratio.mean), ratio.count);
+            short_number(ratio.mean), counted(ratio.count, "test"));
       }
     }
     chart.panels.push_back(std::move(panel));
@@ -115,8 +115,9 @@ Chart single_chart(std::span<const ResultRow> rows, const std::string& baseline,
       panel.measured.push_back(ratio_point(metric.series, x, ratio));
       if (names.size() > 1 || ratio.mean >= best) continue;
       best = ratio.mean;
-      chart.finding = fmt::format("The {} is lowest with {}: {} times that of the paper's parameters over {} tests.",
-                                  metric.series, plain_number(x), short_number(ratio.mean), ratio.count);
+      chart.finding =
+          fmt::format("The {} is lowest with {}: {} times that of the paper's parameters over {}.", metric.series,
+                      plain_number(x), short_number(ratio.mean), counted(ratio.count, "test"));
     }
   }
   panel.series = coloured(names);

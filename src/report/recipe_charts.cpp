@@ -52,12 +52,13 @@ Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
   }
   if (ranked.empty()) return chart;
   const RankedRecipe& best = ranked.front();
-  chart.finding = best.recipe == baseline
-                      ? fmt::format("No recipe has a lower {} than {} over {} tests.", paid.front().series, baseline,
-                                    best.ratio.count)
-                      : fmt::format("{} is best: {} times the {} of {} (geometric mean of {} tests, from {} to {}).",
-                                    best.recipe, short_number(best.ratio.mean), paid.front().series, baseline,
-                                    best.ratio.count, short_number(best.ratio.low), short_number(best.ratio.high));
+  chart.finding =
+      best.recipe == baseline
+          ? fmt::format("No recipe has a lower {} than {} over {}.", paid.front().series, baseline,
+                        counted(best.ratio.count, "test"))
+          : fmt::format("{} is best: {} times the {} of {} (geometric mean of {}, from {} to {}).", best.recipe,
+                        short_number(best.ratio.mean), paid.front().series, baseline, counted(best.ratio.count, "test"),
+                        short_number(best.ratio.low), short_number(best.ratio.high));
   chart.panels.push_back(std::move(panel));
   return chart;
 }
