@@ -32,7 +32,7 @@ export function rowOf(point: Point, source: string): Row {
     source,
     value: shortNumber(point.y),
     at: point.x === undefined ? '' : shortNumber(point.x),
-    about: [point.label, range].filter(Boolean).join("; ") || "one value",
+    about: [point.label, range].filter(Boolean).join('; ') || 'one value',
   };
 }
 
@@ -92,7 +92,10 @@ function channels(panel: Panel, options: SpecOptions) {
     type: 'nominal',
     title: panel.x.title || null,
     sort: panel.groups,
-    scale: panel.kind === 'dots' ? { domain: panel.groups, padding: 0.5 } : { domain: panel.groups, paddingInner: 0.25, paddingOuter: 0.12 },
+    scale:
+      panel.kind === 'dots'
+        ? { domain: panel.groups, padding: 0.5 }
+        : { domain: panel.groups, paddingInner: 0.25, paddingOuter: 0.12 },
     axis: {
       labelAngle: 0,
       domain: !lying,
@@ -130,9 +133,20 @@ function publishedLayers(panel: Panel, position: object, lying: boolean, clip: b
     name,
     data: { values: rows },
     mark: onBars
-      ? { type: 'tick', orient: lying ? 'vertical' : 'horizontal', thickness: size, color: colour, clip, bandSize: { band: 1.08 } }
+      ? {
+          type: 'tick',
+          orient: lying ? 'vertical' : 'horizontal',
+          thickness: size,
+          color: colour,
+          clip,
+          bandSize: { band: 1.08 },
+        }
       : { type: 'point', shape: 'diamond', filled: true, size: size * 30, color: colour, opacity: 1, clip },
-    encoding: { ...position, tooltip: tooltip(panel), opacity: { condition: { param: 'picked', value: 1 }, value: 0.1 } },
+    encoding: {
+      ...position,
+      tooltip: tooltip(panel),
+      opacity: { condition: { param: 'picked', value: 1 }, value: 0.1 },
+    },
   });
   return [layer('published_edge', '#ffffff', 6), layer('published', INK, 3)];
 }
@@ -151,8 +165,26 @@ function markOf(panel: Panel, clip: boolean): object {
 
 const CONFIG = {
   font: 'system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif',
-  title: { anchor: 'start', frame: 'group', fontSize: 15, fontWeight: 600, color: INK, subtitleColor: SOFT, subtitleFontSize: 12, offset: 12 },
-  axis: { labelFontSize: 12, titleFontSize: 12, titleFontWeight: 'normal', labelColor: INK, titleColor: SOFT, gridColor: '#e3e6ea', domainColor: '#adb5bd', tickColor: '#adb5bd' },
+  title: {
+    anchor: 'start',
+    frame: 'group',
+    fontSize: 15,
+    fontWeight: 600,
+    color: INK,
+    subtitleColor: SOFT,
+    subtitleFontSize: 12,
+    offset: 12,
+  },
+  axis: {
+    labelFontSize: 12,
+    titleFontSize: 12,
+    titleFontWeight: 'normal',
+    labelColor: INK,
+    titleColor: SOFT,
+    gridColor: '#e3e6ea',
+    domainColor: '#adb5bd',
+    tickColor: '#adb5bd',
+  },
   legend: { labelFontSize: 13, labelColor: INK, symbolSize: 130 },
   view: { stroke: null },
 };

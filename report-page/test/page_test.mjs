@@ -25,12 +25,18 @@ const FLAGS = [
 function makeReport() {
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
-  const results = { 'paper.csv': paperResults(OWN), 'corrected.csv': paperResults(OWN, 'B', 'C', 'D'), 'areas.csv': areaResults() };
+  const results = {
+    'paper.csv': paperResults(OWN),
+    'corrected.csv': paperResults(OWN, 'B', 'C', 'D'),
+    'areas.csv': areaResults(),
+  };
   for (const [name, text] of Object.entries(results)) writeFileSync(join(folder, name), text);
   const page = join(folder, 'report.html');
   const template = join(program, '../../share/raygrain/report-page.html');
   const files = Object.keys(results).map((name) => join(folder, name));
-  execFileSync(program, ['report', ...files, '--out', page, '--template', template], { stdio: ['ignore', 'ignore', 'inherit'] });
+  execFileSync(program, ['report', ...files, '--out', page, '--template', template], {
+    stdio: ['ignore', 'ignore', 'inherit'],
+  });
   return page;
 }
 
@@ -90,7 +96,8 @@ function charts(tab) {
 
 function checkCharts(all) {
   const figures = all.map((chart) => chart.id);
-  for (const number of [14, 16, 17, 18, 19, 20, 22]) assert.ok(figures.includes(`paper-figure-${number}`), `figure ${number}`);
+  for (const number of [14, 16, 17, 18, 19, 20, 22])
+    assert.ok(figures.includes(`paper-figure-${number}`), `figure ${number}`);
   assert.ok(figures.includes('table-1'), 'table 1');
   assert.ok(figures.includes('areas-list-and-octrees-over-many-areas-city'), 'lines');
   for (const chart of all) {
@@ -108,7 +115,11 @@ function checkCharts(all) {
   const panels = (id) => all.find((chart) => chart.id === `paper-figure-${id}`).panels;
   for (const id of [16, 17, 18, 20, 22])
     for (const panel of panels(id)) assert.ok(panel.legend.includes(OWN), `figure ${id} shows ${OWN}: ${panel.title}`);
-  assert.equal(panels(16).find((panel) => panel.title.startsWith('As in the paper')).published, 16, 'published marks of figure 16');
+  assert.equal(
+    panels(16).find((panel) => panel.title.startsWith('As in the paper')).published,
+    16,
+    'published marks of figure 16',
+  );
   assert.match(panels(16)[0].title, /users pay/, 'what users pay comes first');
 }
 
@@ -125,7 +136,10 @@ async function checkHover(tab) {
 }
 
 async function saved(tab, button) {
-  const [file] = await Promise.all([tab.waitForEvent('download'), tab.locator('#paper-figure-16 .panel').nth(1).getByRole('button', { name: button }).click()]);
+  const [file] = await Promise.all([
+    tab.waitForEvent('download'),
+    tab.locator('#paper-figure-16 .panel').nth(1).getByRole('button', { name: button }).click(),
+  ]);
   return { name: file.suggestedFilename(), bytes: readFileSync(await file.path()) };
 }
 
@@ -138,8 +152,14 @@ async function checkDownloads(tab) {
   writeFileSync(join(folder, png.name), png.bytes);
   const csv = (await saved(tab, 'CSV')).bytes.toString().split('\r\n');
   assert.match(csv[0], /^source,series,group,x,value/);
-  assert.ok(csv.some((line) => line.startsWith('measured,PAH+SPFH,plane parallel,,')), 'measured values');
-  assert.ok(csv.some((line) => line.startsWith(`measured,${OWN},`)), 'own values');
+  assert.ok(
+    csv.some((line) => line.startsWith('measured,PAH+SPFH,plane parallel,,')),
+    'measured values',
+  );
+  assert.ok(
+    csv.some((line) => line.startsWith(`measured,${OWN},`)),
+    'own values',
+  );
 }
 
 /** The enlarged chart: the wheel changes its scale, Esc closes it. */
@@ -172,7 +192,11 @@ async function checkValues(tab) {
 /** How light the page is behind its text, and the letters of its charts. */
 function lightness(tab) {
   return tab.evaluate(() => {
-    const sum = (colour) => colour.match(/\d+/g).slice(0, 3).reduce((total, part) => total + Number(part), 0) / 765;
+    const sum = (colour) =>
+      colour
+        .match(/\d+/g)
+        .slice(0, 3)
+        .reduce((total, part) => total + Number(part), 0) / 765;
     return {
       paper: sum(getComputedStyle(document.querySelector('article')).backgroundColor),
       text: sum(getComputedStyle(document.querySelector('.chart svg .role-axis-label text')).fill),
@@ -221,4 +245,6 @@ await visit(report, { viewport: { width: 390, height: 844 }, hasTouch: true, isM
   assert.ok(overflow <= 1, `nothing hangs over the edge of a small screen (${overflow} pixels)`);
   await tab.locator('#paper-figure-16').screenshot({ path: join(folder, 'phone.png') });
 });
-console.log(`report page: all charts drawn, hover, zoom, downloads, dark, print and phone are good; pictures in ${folder}`);
+console.log(
+  `report page: all charts drawn, hover, zoom, downloads, dark, print and phone are good; pictures in ${folder}`,
+);
