@@ -78,7 +78,7 @@ std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr
                              : build_binned(primitives.bounds, primitives.centers, build);
   for (uint32_t& primitive : tree.prims) primitive = primitives.ids[primitive];
   if (cost != nullptr) *cost = estimated_cost(tree, build.strategy.measure, build.costs);
-  WideOptions w{.measure = build.strategy.measure, .isa = options.isa};
+  WideOptions w{.measure = build.strategy.measure, .isa = options.isa, .max_leaf_size = 16};
   if (getenv("ML")) w.max_leaf_size = (uint32_t)atoi(getenv("ML"));
   if (getenv("CT")) w.costs.triangle = (float)atof(getenv("CT"));
   if (getenv("CL")) w.costs.leaf = (float)atof(getenv("CL"));
