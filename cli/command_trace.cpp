@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
-#include <mutex>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -27,7 +26,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr size_t kChunk = 1024;  // rays that one thread takes at a time
 constexpr const char* kDefaultGlobal = "SAH+ALL@binned";
 
 struct Options {
@@ -35,7 +33,7 @@ struct Options {
   AreaOptions areas;
   std::string scene, rays, set, output;
   std::string local = "PAH+ALL@binned", global = kDefaultGlobal;
-  std::string quality;
+  std::string quality, traversal = "wide";
   bool verify = false, reinsert = false;
 };
 
@@ -56,6 +54,9 @@ AcceleratorOptions accelerator_options(const Options& options) {
     result.quality = parse_quality(options.quality);
   }
   result.reinsert = options.reinsert;
+  if (options.traversal != "wide" && options.traversal != "binary")
+    fail_usage("--traversal", "unknown form '" + options.traversal + "'", "Known: wide, binary");
+  result.traversal = options.traversal == "wide" ? Traversal::kWide : Traversal::kBinary;
   result.threads = options.common.thread_count();
   result.samples = [](const InfluenceArea* area) { return area ? sample_rays(*area, 1) : std::vector<Ray>{}; };
   return result;
@@ -75,19 +76,15 @@ using Tell = std::function<void(double done)>;
 
 /// In large pieces, so that progress can be told between them.
 Traced trace_all(const Accelerator& accelerator, std::span<const Ray> rays, unsigned threads, const Tell& tell) {
-  constexpr size_t kPiece = 64 * kChunk;
+  constexpr size_t kPiece = 65536;
   Traced traced;
   traced.hits.resize(rays.size());
-  std::mutex mutex;
   const Timer timer;
   for (size_t start = 0; start < rays.size(); start += kPiece) {
     tell(static_cast<double>(start) / static_cast<double>(rays.size()));
-    parallel_for(std::min(kPiece, rays.size() - start), kChunk, threads, [&](size_t begin, size_t end) {
-      AcceleratorCounters counters;
-      for (size_t i = start + begin; i < start + end; ++i) traced.hits[i] = accelerator.intersect(rays[i], &counters);
-      const std::lock_guard lock(mutex);
-      traced.counters.add(counters);
-    });
+    const size_t count = std::min(kPiece, rays.size() - start);
+    accelerator.intersect(rays.subspan(start, count), std::span(traced.hits).subspan(start, count), threads,
+                          &traced.counters);
   }
   traced.seconds = timer.seconds();
   for (const Hit& hit : traced.hits) traced.hit_count += is_hit(hit) ? 1 : 0;
@@ -173,8 +170,12 @@ Traced trace_and_verify(const Options& options, const Scene& scene, const std::v
                         std::span<const Ray> rays, Progress& progress) {
   const double built = options.verify ? 0.1 : 0.5, traced_share = options.verify ? 0.2 : 1;
   const unsigned threads = options.common.thread_count();
-  progress.show("build the trees", 0);
-  const Accelerator accelerator(scene.mesh, areas, accelerator_options(options));
+  AcceleratorOptions build = accelerator_options(options);
+  build.progress = [&](double done) {
+    progress.show("build the trees", built * done);
+    return true;
+  };
+  const Accelerator accelerator(scene.mesh, areas, build);
   Traced traced = trace_all(accelerator, rays, threads,
                             [&](double done) { progress.show("trace rays", built + done * (traced_share - built)); });
   if (!options.verify) return traced;
@@ -221,6 +222,7 @@ Action declare_trace(Arguments& arguments) {
   arguments.text("--quality", "NAME", options->quality,
                  "Of that tree: fast, balanced or best, in place of its builder");
   arguments.flag("--reinsert", options->reinsert, "Improve that tree by reinsertion, under its measure");
+  arguments.text("--traversal", "NAME", options->traversal, "Form of the trees: wide, or binary (slower) [wide]");
   arguments.flag("--verify", options->verify, "Check every hit against brute force (slow)");
   add_common(arguments, options->common);
   return [options] { return trace(*options); };

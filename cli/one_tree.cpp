@@ -15,6 +15,8 @@ namespace raygrain::cli {
 
 namespace {
 
+constexpr double kBuildShare = 0.3;  // of the progress bar
+
 std::string known_names(std::span<const InfluenceArea> areas, const std::string& wanted) {
   std::vector<std::string_view> names;
   for (const InfluenceArea& area : areas) names.push_back(area.name);
@@ -101,15 +103,21 @@ OneTree build_one_tree(const TreeOptions& options, const Scene& scene, const std
   result.area = pick_area(options, scene, areas, samples || needs_area(result.recipe, result.registry));
   if (samples) result.samples = sample_rays(*result.area, options.seed);
 
-  progress.show("build " + recipe_name(result.recipe), 0);
+  const std::string step = "build " + recipe_name(result.recipe);
+  const BuildRun run{options.common.thread_count(), [&](double done) {
+                       progress.show(step, kBuildShare * done);
+                       return true;
+                     }};
+  progress.show(step, 0);
   const Timer timer;
   if (result.area) {
-    LocalTree local = build_local_tree(scene.mesh, *result.area, result.recipe, result.registry, {}, result.samples);
+    LocalTree local =
+        build_local_tree(scene.mesh, *result.area, result.recipe, result.registry, {}, result.samples, run);
     result.tree = local.tree;
     result.log = std::move(local.log);
   } else {
-    result.tree =
-        std::make_shared<const Bvh>(build_global_tree(scene.mesh, result.recipe, result.registry, &result.log));
+    result.tree = std::make_shared<const Bvh>(
+        build_global_tree(scene.mesh, result.recipe, result.registry, &result.log, {}, run));
   }
   if (options.reinsert) improve(result, options.common.thread_count());
   result.seconds = timer.seconds();

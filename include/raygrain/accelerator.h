@@ -9,10 +9,12 @@
 
 #include "raygrain/area.h"
 #include "raygrain/bvh.h"
+#include "raygrain/coverage.h"
 #include "raygrain/mesh.h"
 #include "raygrain/registry.h"
 #include "raygrain/top_level.h"
 #include "raygrain/trace.h"
+#include "raygrain/wide.h"
 
 namespace raygrain {
 
@@ -24,16 +26,30 @@ using MembershipRule = std::function<bool(const AreaGeometry&, Vec3 a, Vec3 b, V
 /// be called from several threads.
 using SampleSource = std::function<std::vector<Ray>(const InfluenceArea* area)>;
 
+/// The form of the trees that rays are sent through. Answers are the same.
+enum class Traversal {
+  kWide,    // WideBvh: fast
+  kBinary,  // Bvh: what builders return and costs are defined on; for studies
+};
+
 struct AcceleratorOptions {
   Recipe local{"PAH", "ALL", "binned", {}};   // of each area's tree
   Recipe global{"SAH", "ALL", "binned", {}};  // of the tree that answers all other rays
   std::optional<Quality> quality;             // of the global tree: replaces its recipe's builder
   bool reinsert = false;                      // improve the global tree by reinsertion, under its own measure
+  Traversal traversal = Traversal::kWide;
+  std::optional<Isa> isa;  // of wide trees; default_isa() without one
+  /// Of each area, over all triangles that its rays can meet: answers batches of rays that share its direction or its
+  /// point. Nothing, and under Traversal::kBinary: none is built.
+  std::optional<CoverageOptions> coverage = CoverageOptions{};
   TopLevelOptions top_level;
   Registry registry = default_registry();
   MembershipRule membership;  // empty: overlaps(region, a, b, c)
   SampleSource samples;       // empty: none
-  unsigned threads = 0;       // of the build; 0 = all
+  unsigned threads = 0;       // of the build; 0 = all; nothing depends on it
+  /// Called now and then, never by two threads at once, with the finished share of the build in [0, 1], not descending.
+  /// false cancels: Error kCancelled.
+  std::function<bool(double done)> progress;
 };
 
 /// One area with its tree; `predicted_cost` is the estimated cost per ray under the tree's own measure.
@@ -42,9 +58,11 @@ struct LocalTree {
   std::shared_ptr<const Bvh> tree;
   BuildLog log;
   double predicted_cost = 0;
+  RayMeasure measure = {};  // the tree's own; decides how its wide form is collapsed
 };
 
-/// What happened while rays were traced (sums).
+/// What happened while rays were traced (sums). Under Traversal::kWide the nodes and boxes of `local` and `global` are
+/// those of the wide trees (see WideBvh::intersect_counted).
 struct AcceleratorCounters {
   uint64_t rays = 0;
   uint64_t invalid_rays = 0;     // misses by definition
@@ -73,22 +91,56 @@ class Accelerator {
   explicit Accelerator(TriangleMesh mesh, std::vector<InfluenceArea> areas = {},
                        const AcceleratorOptions& options = {});
 
-  /// From finished parts, e.g. to share one mesh and global tree between several sets of local trees. Throws Error:
-  /// kBadMesh, kBadArea, kUsage (a part is missing, or a tree does not fit the mesh).
+  /// From finished parts. Throws Error: kBadMesh, kBadArea, kUsage (a part is missing, or a tree does not fit the
+  /// mesh).
   Accelerator(std::shared_ptr<const TriangleMesh> mesh, std::vector<LocalTree> locals,
-              std::shared_ptr<const Bvh> global, const TopLevelOptions& top_level = {});
+              std::shared_ptr<const Bvh> global, const TopLevelOptions& top_level = {},
+              Traversal traversal = Traversal::kWide);
 
+  /// Other local trees over the same mesh and global tree, which are shared with this one. Same errors.
+  Accelerator with_local_trees(std::vector<LocalTree> locals, const TopLevelOptions& top_level = {}) const;
+
+  /// Nearest hit by (t, triangle id). Counting costs time: leave `counters` out where they are not read.
   Hit intersect(const Ray& ray, AcceleratorCounters* counters = nullptr) const;
+  /// Is there any hit in [tmin, tmax]?
   bool occluded(const Ray& ray, AcceleratorCounters* counters = nullptr) const;
+
+  /// Many rays of any kind, answered as one by one; `hits` and `flags` (1 = occluded) have the size of `rays`, or Error
+  /// (kUsage). 0 threads = all.
+  void intersect(std::span<const Ray> rays, std::span<Hit> hits, unsigned threads = 1,
+                 AcceleratorCounters* counters = nullptr) const;
+  void occluded(std::span<const Ray> rays, std::span<uint8_t> flags, unsigned threads = 1,
+                AcceleratorCounters* counters = nullptr) const;
+
+  /// Rays that share a direction or a point, tmin 0: what most users have, and several times faster than rays of any
+  /// kind where an area has that direction or point. In any order; answers as of the single rays. Sizes must agree, or
+  /// Error (kUsage). 0 threads = all.
+  ///
+  /// From each origin along `direction`, tmax infinite.
+  void occluded(std::span<const Vec3> origins, Vec3 direction, std::span<uint8_t> flags, unsigned threads = 0) const;
+  void intersect(std::span<const Vec3> origins, Vec3 direction, std::span<Hit> hits, unsigned threads = 0) const;
+  /// From each origin to `point`: direction float32(point - origin), tmax 1.
+  void occluded_towards(std::span<const Vec3> origins, Vec3 point, std::span<uint8_t> flags,
+                        unsigned threads = 0) const;
+  /// From `eye` along each direction, tmax infinite.
+  void intersect_from(Vec3 eye, std::span<const Vec3> directions, std::span<Hit> hits, unsigned threads = 0) const;
+
+  /// One per area, or none.
+  std::span<const Coverage> coverages() const;
 
   const TriangleMesh& mesh() const;
   std::span<const LocalTree> local_trees() const;
   const Bvh& global_tree() const;
   const TopLevel& top_level() const;
-  size_t memory_bytes() const;  // trees, top level and areas, without the mesh
+  Traversal traversal() const;
+  /// Everything but the mesh: binary trees, wide trees, top level and areas.
+  size_t memory_bytes() const;
+  /// The wide trees of these alone; 0 under Traversal::kBinary.
+  size_t wide_memory_bytes() const;
 
  private:
   struct Parts;
+  explicit Accelerator(std::shared_ptr<const Parts> parts);
   std::shared_ptr<const Parts> parts_;
 };
 
@@ -99,10 +151,10 @@ std::vector<uint32_t> area_members(const TriangleMesh& mesh, const AreaGeometry&
 /// Builds one area's local tree over the triangles that overlap its region; `prims` are triangle ids of `mesh`.
 LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, const Recipe& recipe,
                            const Registry& registry, const MembershipRule& membership = {},
-                           std::span<const Ray> samples = {});
+                           std::span<const Ray> samples = {}, const BuildRun& run = {});
 
 /// Builds the recipe's tree over all triangles.
 Bvh build_global_tree(const TriangleMesh& mesh, const Recipe& recipe, const Registry& registry, BuildLog* log = nullptr,
-                      std::span<const Ray> samples = {});
+                      std::span<const Ray> samples = {}, const BuildRun& run = {});
 
 }  // namespace raygrain

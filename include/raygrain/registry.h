@@ -80,8 +80,9 @@ bool needs_samples(const Recipe& recipe, const Registry& registry);
 /// plane areas).
 BuildOptions make_build_options(const Recipe& recipe, const Registry& registry, const HeuristicInput& input);
 
-/// Builds the recipe's tree.
+/// Builds the recipe's tree. Throws Error: as make_build_options and the builder; kCancelled.
 Bvh build_tree(const Recipe& recipe, const Registry& registry, const HeuristicInput& input,
-               std::span<const Bounds> bounds, std::span<const Vec3> centroids, BuildLog* log = nullptr);
+               std::span<const Bounds> bounds, std::span<const Vec3> centroids, BuildLog* log = nullptr,
+               const BuildRun& run = {});
 
 }  // namespace raygrain

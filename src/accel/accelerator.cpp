@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numeric>
 #include <string>
 #include <utility>
 
 #include "raygrain/error.h"
-#include "raygrain/refine.h"
 
+#include "accel/build_trees.h"
 #include "accel/search.h"
 #include "base/parallel.h"
 
@@ -17,8 +18,16 @@ namespace raygrain {
 struct Accelerator::Parts {
   std::shared_ptr<const TriangleMesh> mesh;
   std::vector<LocalTree> locals;
-  std::shared_ptr<const Bvh> global;
+  std::vector<SearchTree> searches;  // parallel to `locals`
+  SearchTree global;
   AreaTable areas;
+  Traversal traversal = Traversal::kWide;
+  std::vector<Coverage> coverages = {};  // parallel to `locals`, or empty
+
+  Hit nearest(const Ray& ray, AcceleratorCounters* counters) const;
+  bool any(const Ray& ray, AcceleratorCounters* counters) const;
+  /// What no area answers goes to the wide global tree as an array.
+  bool has_only_wide_global() const { return locals.empty() && global.wide().has_value(); }
 };
 
 namespace {
@@ -58,11 +67,14 @@ void validate_tree(const Bvh* tree, std::span<const Bounds> bounds, std::span<co
   if (const auto defect = find_defect(*tree, bounds, expected)) throw Error(ErrorCode::kUsage, where, *defect);
 }
 
-void validate_parts(const TriangleMesh* mesh, std::span<const LocalTree> locals, const Bvh* global) {
+void validate_mesh_and_global(const TriangleMesh* mesh, const Bvh* global) {
   if (mesh == nullptr) throw Error(ErrorCode::kUsage, "mesh", "is missing");
   validate(*mesh, "mesh");
-  const std::vector<Bounds> bounds = triangle_bounds(*mesh);
-  validate_tree(global, bounds, {}, "global tree");
+  validate_tree(global, triangle_bounds(*mesh), {}, "global tree");
+}
+
+void validate_locals(const TriangleMesh& mesh, std::span<const LocalTree> locals) {
+  const std::vector<Bounds> bounds = locals.empty() ? std::vector<Bounds>{} : triangle_bounds(mesh);
   for (size_t i = 0; i < locals.size(); ++i) {
     const std::string where = area_label(i, locals[i].area);
     validate(locals[i].area, where);
@@ -73,44 +85,40 @@ void validate_parts(const TriangleMesh* mesh, std::span<const LocalTree> locals,
   }
 }
 
-struct Trees {
-  std::vector<LocalTree> locals;
-  std::shared_ptr<const Bvh> global;
-};
-
-Bvh build_global(const TriangleMesh& mesh, const AcceleratorOptions& options, std::span<const Ray> samples) {
-  Recipe recipe = options.global;
-  if (options.quality) recipe.builder = builder_name(*options.quality);
-  Bvh tree = build_global_tree(mesh, recipe, options.registry, nullptr, samples);
-  if (!options.reinsert) return tree;
-  const BuildOptions build = make_build_options(recipe, options.registry, {nullptr, samples});
-  ReinsertOptions reinsertion;
-  reinsertion.threads = options.threads;
-  reinsertion.costs = build.costs;
-  raygrain::reinsert(tree, build.strategy.measure, reinsertion);
-  return tree;
+std::vector<SearchTree> make_searches(const TriangleMesh& mesh, std::span<const LocalTree> locals,
+                                      Traversal traversal) {
+  std::vector<SearchTree> searches;
+  searches.reserve(locals.size());
+  for (const LocalTree& local : locals)
+    searches.push_back(make_search_tree(mesh, local.tree, local.measure, traversal));
+  return searches;
 }
 
-/// One task per tree, the global one first because it is the longest.
-Trees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> areas, const AcceleratorOptions& options) {
-  const auto samples = [&](const InfluenceArea* area) {
-    return options.samples ? options.samples(area) : std::vector<Ray>{};
-  };
-  Trees trees;
-  trees.locals.resize(areas.size());
-  const auto build = [&](size_t task) {
-    if (task == 0) {
-      trees.global = std::make_shared<const Bvh>(build_global(mesh, options, samples(nullptr)));
-    } else {
-      const InfluenceArea& area = areas[task - 1];
-      trees.locals[task - 1] =
-          build_local_tree(mesh, area, options.local, options.registry, options.membership, samples(&area));
-    }
-  };
-  parallel_for(areas.size() + 1, 1, options.threads, [&](size_t begin, size_t end) {
-    for (size_t task = begin; task < end; ++task) build(task);
+void check_sizes(size_t rays, size_t answers) {
+  if (rays != answers)
+    throw Error(ErrorCode::kUsage, "Accelerator",
+                std::to_string(rays) + " rays and room for " + std::to_string(answers) + " answers");
+}
+
+TraceCounters* local_counters(AcceleratorCounters* counters) {
+  return counters != nullptr ? &counters->local : nullptr;
+}
+TraceCounters* global_counters(AcceleratorCounters* counters) {
+  return counters != nullptr ? &counters->global : nullptr;
+}
+
+/// answer(i, counters) for each ray; counters of threads are summed.
+template <class Answer>
+void for_chunks(size_t rays, unsigned threads, AcceleratorCounters* counters, const Answer& answer) {
+  constexpr size_t kChunk = 1024;
+  std::mutex mutex;
+  parallel_for(rays, kChunk, threads, [&](size_t begin, size_t end) {
+    AcceleratorCounters own;
+    for (size_t i = begin; i < end; ++i) answer(i, counters != nullptr ? &own : nullptr);
+    if (counters == nullptr) return;
+    const std::lock_guard lock(mutex);
+    counters->add(own);
   });
-  return trees;
 }
 
 /// Are all hits of the ray that can be nearer than `best` known, when those with t <= exit are?
@@ -120,63 +128,103 @@ bool is_final(const Hit& best, const Ray& ray, float exit) {
 
 }  // namespace
 
+Accelerator::Accelerator(std::shared_ptr<const Parts> parts) : parts_(std::move(parts)) {}
+
 Accelerator::Accelerator(TriangleMesh mesh, std::vector<InfluenceArea> areas, const AcceleratorOptions& options) {
   validate(mesh, "mesh");
   for (size_t i = 0; i < areas.size(); ++i) validate(areas[i], area_label(i, areas[i]));
-  Trees trees = build_trees(mesh, areas, options);
+  auto shared = std::make_shared<const TriangleMesh>(std::move(mesh));
+  BuiltTrees trees = build_trees(*shared, areas, options);
   AreaTable table = make_area_table(trees.locals, options.top_level);
-  parts_ = std::make_shared<const Parts>(Parts{std::make_shared<const TriangleMesh>(std::move(mesh)),
-                                               std::move(trees.locals), std::move(trees.global), std::move(table)});
+  std::vector<Coverage> coverages = build_coverages(shared, areas, options);
+  parts_ = std::make_shared<const Parts>(Parts{std::move(shared), std::move(trees.locals),
+                                               std::move(trees.local_searches), std::move(*trees.global),
+                                               std::move(table), options.traversal, std::move(coverages)});
 }
 
 Accelerator::Accelerator(std::shared_ptr<const TriangleMesh> mesh, std::vector<LocalTree> locals,
-                         std::shared_ptr<const Bvh> global, const TopLevelOptions& top_level) {
-  validate_parts(mesh.get(), locals, global.get());
+                         std::shared_ptr<const Bvh> global, const TopLevelOptions& top_level, Traversal traversal) {
+  validate_mesh_and_global(mesh.get(), global.get());
+  validate_locals(*mesh, locals);
+  std::vector<SearchTree> searches = make_searches(*mesh, locals, traversal);
+  SearchTree search = make_search_tree(*mesh, std::move(global), {}, traversal);
   AreaTable table = make_area_table(locals, top_level);
-  parts_ =
-      std::make_shared<const Parts>(Parts{std::move(mesh), std::move(locals), std::move(global), std::move(table)});
+  parts_ = std::make_shared<const Parts>(
+      Parts{std::move(mesh), std::move(locals), std::move(searches), std::move(search), std::move(table), traversal});
 }
 
-Hit Accelerator::intersect(const Ray& ray, AcceleratorCounters* counters) const {
-  AcceleratorCounters unwanted;
-  AcceleratorCounters& count = counters != nullptr ? *counters : unwanted;
-  ++count.rays;
+Accelerator Accelerator::with_local_trees(std::vector<LocalTree> locals, const TopLevelOptions& top_level) const {
+  validate_locals(*parts_->mesh, locals);
+  std::vector<SearchTree> searches = make_searches(*parts_->mesh, locals, parts_->traversal);
+  AreaTable table = make_area_table(locals, top_level);
+  return Accelerator(std::make_shared<const Parts>(Parts{parts_->mesh, std::move(locals), std::move(searches),
+                                                         parts_->global, std::move(table), parts_->traversal}));
+}
+
+Hit Accelerator::Parts::nearest(const Ray& ray, AcceleratorCounters* counters) const {
+  if (counters != nullptr) ++counters->rays;
   if (!is_valid(ray)) {
-    ++count.invalid_rays;
+    if (counters != nullptr) ++counters->invalid_rays;
     return {};
   }
   Hit best;
-  AreaWalk walk(parts_->areas, ray, count);
+  AreaWalk walk(areas, ray, counters);
   while (const auto stage = walk.next()) {
-    const Bvh& tree = *parts_->locals[stage->area].tree;
-    best = raygrain::intersect(tree, *parts_->mesh, ray, best, walk.search_options(), &count.local);
+    best = searches[stage->area].intersect(ray, best, walk.search_options(), local_counters(counters));
     if (!is_final(best, ray, stage->exit)) continue;
-    if (is_hit(best)) ++count.local_hits;
+    if (counters != nullptr && is_hit(best)) ++counters->local_hits;
     return best;
   }
-  ++count.global_searches;
-  return raygrain::intersect(*parts_->global, *parts_->mesh, ray, best, walk.search_options(), &count.global);
+  if (counters != nullptr) ++counters->global_searches;
+  return global.intersect(ray, best, walk.search_options(), global_counters(counters));
 }
 
-bool Accelerator::occluded(const Ray& ray, AcceleratorCounters* counters) const {
-  AcceleratorCounters unwanted;
-  AcceleratorCounters& count = counters != nullptr ? *counters : unwanted;
-  ++count.rays;
+bool Accelerator::Parts::any(const Ray& ray, AcceleratorCounters* counters) const {
+  if (counters != nullptr) ++counters->rays;
   if (!is_valid(ray)) {
-    ++count.invalid_rays;
+    if (counters != nullptr) ++counters->invalid_rays;
     return false;
   }
-  AreaWalk walk(parts_->areas, ray, count);
+  AreaWalk walk(areas, ray, counters);
   while (const auto stage = walk.next()) {
-    const Bvh& tree = *parts_->locals[stage->area].tree;
-    if (raygrain::occluded(tree, *parts_->mesh, ray, walk.search_options(), &count.local)) {
-      ++count.local_hits;  // wherever it is: any hit answers
+    if (searches[stage->area].occluded(ray, walk.search_options(), local_counters(counters))) {
+      if (counters != nullptr) ++counters->local_hits;  // wherever it is: any hit answers
       return true;
     }
     if (is_final({}, ray, stage->exit)) return false;
   }
-  ++count.global_searches;
-  return raygrain::occluded(*parts_->global, *parts_->mesh, ray, walk.search_options(), &count.global);
+  if (counters != nullptr) ++counters->global_searches;
+  return global.occluded(ray, walk.search_options(), global_counters(counters));
+}
+
+Hit Accelerator::intersect(const Ray& ray, AcceleratorCounters* counters) const {
+  return parts_->nearest(ray, counters);
+}
+
+bool Accelerator::occluded(const Ray& ray, AcceleratorCounters* counters) const {
+  return parts_->any(ray, counters);
+}
+
+void Accelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits, unsigned threads,
+                            AcceleratorCounters* counters) const {
+  check_sizes(rays.size(), hits.size());
+  if (counters == nullptr && parts_->has_only_wide_global())
+    return parts_->global.wide()->intersect(rays, hits, threads);
+  for_chunks(rays.size(), threads, counters,
+             [&](size_t i, AcceleratorCounters* count) { hits[i] = parts_->nearest(rays[i], count); });
+}
+
+void Accelerator::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, unsigned threads,
+                           AcceleratorCounters* counters) const {
+  check_sizes(rays.size(), flags.size());
+  if (counters == nullptr && parts_->has_only_wide_global())
+    return parts_->global.wide()->occluded(rays, flags, threads);
+  for_chunks(rays.size(), threads, counters,
+             [&](size_t i, AcceleratorCounters* count) { flags[i] = parts_->any(rays[i], count) ? 1 : 0; });
+}
+
+std::span<const Coverage> Accelerator::coverages() const {
+  return parts_->coverages;
 }
 
 const TriangleMesh& Accelerator::mesh() const {
@@ -188,18 +236,29 @@ std::span<const LocalTree> Accelerator::local_trees() const {
 }
 
 const Bvh& Accelerator::global_tree() const {
-  return *parts_->global;
+  return *parts_->global.binary();
 }
 
 const TopLevel& Accelerator::top_level() const {
   return parts_->areas.top_level;
 }
 
+Traversal Accelerator::traversal() const {
+  return parts_->traversal;
+}
+
 size_t Accelerator::memory_bytes() const {
-  size_t bytes = raygrain::memory_bytes(*parts_->global) + parts_->areas.top_level.memory_bytes();
+  size_t bytes = raygrain::memory_bytes(global_tree()) + parts_->areas.top_level.memory_bytes();
   bytes += parts_->areas.geometries.capacity() * sizeof(AreaGeometry);
   bytes += parts_->areas.ranks.capacity() * sizeof(uint32_t);
   for (const LocalTree& local : parts_->locals) bytes += sizeof(LocalTree) + raygrain::memory_bytes(*local.tree);
+  for (const Coverage& coverage : parts_->coverages) bytes += coverage.memory_bytes();
+  return bytes + wide_memory_bytes();
+}
+
+size_t Accelerator::wide_memory_bytes() const {
+  size_t bytes = parts_->global.wide_bytes();
+  for (const SearchTree& search : parts_->searches) bytes += search.wide_bytes();
   return bytes;
 }
 

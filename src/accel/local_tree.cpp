@@ -17,7 +17,8 @@ std::vector<uint32_t> area_members(const TriangleMesh& mesh, const AreaGeometry&
 }
 
 LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, const Recipe& recipe,
-                           const Registry& registry, const MembershipRule& membership, std::span<const Ray> samples) {
+                           const Registry& registry, const MembershipRule& membership, std::span<const Ray> samples,
+                           const BuildRun& run) {
   const AreaGeometry geometry(area);
   const std::vector<uint32_t> members = area_members(mesh, geometry, membership);
   std::vector<Bounds> bounds;
@@ -34,20 +35,21 @@ LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, 
                              }};
   LocalTree local;
   local.area = area;
-  Bvh tree = build_tree(recipe, registry, input, bounds, centroids, &local.log);
+  Bvh tree = build_tree(recipe, registry, input, bounds, centroids, &local.log, run);
   for (uint32_t& primitive : tree.prims) primitive = members[primitive];
   const BuildOptions options = make_build_options(recipe, registry, input);
-  local.predicted_cost = estimated_cost(tree, options.strategy.measure, options.costs);
+  local.measure = options.strategy.measure;
+  local.predicted_cost = estimated_cost(tree, local.measure, options.costs);
   local.tree = std::make_shared<const Bvh>(std::move(tree));
   return local;
 }
 
 Bvh build_global_tree(const TriangleMesh& mesh, const Recipe& recipe, const Registry& registry, BuildLog* log,
-                      std::span<const Ray> samples) {
+                      std::span<const Ray> samples, const BuildRun& run) {
   const HeuristicInput input{nullptr, samples, [&mesh](uint32_t triangle, const Bounds& box) {
                                return clip_triangle_bounds(mesh, triangle, box);
                              }};
-  return build_tree(recipe, registry, input, triangle_bounds(mesh), triangle_centroids(mesh), log);
+  return build_tree(recipe, registry, input, triangle_bounds(mesh), triangle_centroids(mesh), log, run);
 }
 
 }  // namespace raygrain

@@ -14,10 +14,11 @@ Ray moved_along(const Ray& ray, float t) {
 
 }  // namespace
 
-AreaWalk::AreaWalk(const AreaTable& areas, const Ray& ray, AcceleratorCounters& counters)
+AreaWalk::AreaWalk(const AreaTable& areas, const Ray& ray, AcceleratorCounters* counters)
     : areas_(areas), ray_(ray), counters_(counters) {}
 
 std::optional<AreaWalk::Stage> AreaWalk::next() {
+  if (areas_.geometries.empty()) return {};
   if (ray_.tmin < 0) return {};  // hits behind the origin: no area's region certifies anything about them
   if (started_) search_.skip_before = from_;
   const Ray here = started_ ? moved_along(ray_, from_) : ray_;
@@ -27,9 +28,9 @@ std::optional<AreaWalk::Stage> AreaWalk::next() {
     tried_[tried_count_++] = *area;
     const float exit = certain_exit(*area);
     if (!(exit > from_)) continue;
-    if (started_) ++counters_.continued;
+    if (started_) count(&AcceleratorCounters::continued);
     started_ = true;
-    ++counters_.local_searches;
+    count(&AcceleratorCounters::local_searches);
     from_ = exit;
     return Stage{*area, exit};
   }
@@ -45,9 +46,9 @@ std::optional<uint32_t> AreaWalk::cheapest_serving(const Ray& from_here) {
   std::optional<uint32_t> best;
   for (const uint32_t area : areas_.top_level.regions_at(from_here.origin)) {
     if (was_tried(area)) continue;
-    ++counters_.areas_tested;
+    count(&AcceleratorCounters::areas_tested);
     if (!areas_.geometries[area].serves(from_here)) continue;
-    ++counters_.areas_serving;
+    count(&AcceleratorCounters::areas_serving);
     if (!best || areas_.ranks[area] < areas_.ranks[*best]) best = area;
   }
   return best;

@@ -37,7 +37,8 @@ class AreaWalk {
     float exit;  // hits with t <= exit are known after this area
   };
 
-  AreaWalk(const AreaTable& areas, const Ray& ray, AcceleratorCounters& counters);
+  /// Null counters: nothing is counted.
+  AreaWalk(const AreaTable& areas, const Ray& ray, AcceleratorCounters* counters);
 
   /// The next area to search, or nothing: the global tree must answer.
   std::optional<Stage> next();
@@ -49,13 +50,16 @@ class AreaWalk {
   /// More areas than this along one ray are not worth their while; the global tree answers then.
   static constexpr size_t kMaxStages = 16;
 
+  void count(uint64_t AcceleratorCounters::*what) {
+    if (counters_ != nullptr) ++(counters_->*what);
+  }
   bool was_tried(uint32_t area) const;
   std::optional<uint32_t> cheapest_serving(const Ray& from_here);
   float certain_exit(uint32_t area) const;
 
   const AreaTable& areas_;
   const Ray& ray_;
-  AcceleratorCounters& counters_;
+  AcceleratorCounters* counters_;
   SearchOptions search_;
   float from_ = 0;  // hits with t <= from_ are known; 0: none needs to be
   bool started_ = false;

@@ -97,8 +97,8 @@ constexpr std::array<Row, kFieldCount> kRows{{
     {kNodeSeconds, {"node_seconds", "s", 0, kUnlimited, kLow, false, "Part of the build: making nodes."}},
     {kTraceSeconds,
      {"trace_seconds", "s", 0, kUnlimited, kLow, false,
-      "Time to find the nearest hit of all rays, this tree first and the global one behind it, least of three "
-      "passes."}},
+      "Time to find the nearest hit of all rays through wide trees, this one first and the global one behind it, "
+      "least of three passes."}},
     // Proof, and what the costs were measured with.
     {kMismatches,
      {"mismatches", "", 0, kUnlimited, kLow, true, "Rays whose hit differs in any bit from an independent search's."}},

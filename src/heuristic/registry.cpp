@@ -157,9 +157,12 @@ BuildOptions make_build_options(const Recipe& recipe, const Registry& registry, 
 }
 
 Bvh build_tree(const Recipe& recipe, const Registry& registry, const HeuristicInput& input,
-               std::span<const Bounds> bounds, std::span<const Vec3> centroids, BuildLog* log) {
+               std::span<const Bounds> bounds, std::span<const Vec3> centroids, BuildLog* log, const BuildRun& run) {
   const BuilderEntry& builder = find_entry(registry.builders, recipe.builder, "builder");
-  return builder.build(bounds, centroids, make_build_options(recipe, registry, input), log);
+  BuildOptions options = make_build_options(recipe, registry, input);
+  options.threads = run.threads;
+  options.progress = run.progress;
+  return builder.build(bounds, centroids, options, log);
 }
 
 }  // namespace raygrain

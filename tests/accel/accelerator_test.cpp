@@ -166,6 +166,107 @@ TEST(Accelerator, PartsMayBeShared) {
     ASSERT_EQ(list.intersect(ray), octree.intersect(ray));
 }
 
+TEST(Accelerator, OtherLocalTreesShareMeshAndGlobalTree) {
+  const Accelerator without(random_mesh(200, 6));
+  std::vector<LocalTree> locals;
+  for (const InfluenceArea& area : some_areas())
+    locals.push_back(build_local_tree(without.mesh(), area, {"PAH", "ALL", "binned", {}}, default_registry()));
+  const Accelerator with = without.with_local_trees(locals, {TopLevelKind::kList});
+  EXPECT_EQ(&with.mesh(), &without.mesh());
+  EXPECT_EQ(&with.global_tree(), &without.global_tree());
+  EXPECT_EQ(with.local_trees().size(), 3u);
+  EXPECT_EQ(with.top_level().kind(), TopLevelKind::kList);
+  EXPECT_EQ(with.traversal(), Traversal::kWide);
+  AcceleratorCounters counters;
+  for (const Ray& ray : cast_rays(AreaRays{some_areas()[0]}, 200, 1))
+    ASSERT_EQ(with.intersect(ray, &counters), without.intersect(ray));
+  EXPECT_GT(counters.local_hits, 0u);
+  locals[1].tree = nullptr;
+  EXPECT_EQ(error_of([&] { without.with_local_trees(locals); }).where, "areas[1] 'lamp'");
+}
+
+TEST(Accelerator, WideTreesCostMemoryAndSaveNodes) {
+  const TriangleMesh mesh = random_mesh(500, 16);
+  AcceleratorOptions options;
+  const Accelerator wide(mesh, some_areas(), options);
+  options.traversal = Traversal::kBinary;
+  const Accelerator binary(mesh, some_areas(), options);
+  EXPECT_EQ(binary.wide_memory_bytes(), 0u);
+  EXPECT_GT(wide.wide_memory_bytes(), mesh.triangle_count() * 40);
+  EXPECT_EQ(wide.memory_bytes(), binary.memory_bytes() + wide.wide_memory_bytes());
+  const std::vector<Ray> rays = cast_rays(AreaRays{some_areas()[0], RayStart::kRandomDepth}, 500, 3);
+  std::vector<Hit> through_wide(rays.size()), through_binary(rays.size());
+  AcceleratorCounters in_wide, in_binary;
+  wide.intersect(rays, through_wide, 1, &in_wide);
+  binary.intersect(rays, through_binary, 1, &in_binary);
+  EXPECT_EQ(through_wide, through_binary);
+  EXPECT_LT(in_wide.local.inner_hits, in_binary.local.inner_hits);
+  EXPECT_EQ(in_wide.local_searches, in_binary.local_searches);
+}
+
+TEST(Accelerator, ArraysAreAnsweredAsSingleRaysAre) {
+  for (const Traversal traversal : {Traversal::kWide, Traversal::kBinary})
+    for (const bool with_areas : {false, true}) {
+      AcceleratorOptions options;
+      options.traversal = traversal;
+      const Accelerator scene(random_mesh(300, 15), with_areas ? some_areas() : std::vector<InfluenceArea>{}, options);
+      std::vector<Ray> rays = cast_rays(AreaRays{some_areas()[1], RayStart::kRandomDepth}, 3000, 5);
+      rays[7].direction = {};
+      std::vector<Hit> expected;
+      std::vector<uint8_t> expected_flags;
+      AcceleratorCounters expected_counters, expected_shadows;
+      for (const Ray& ray : rays) {
+        expected.push_back(scene.intersect(ray, &expected_counters));
+        expected_flags.push_back(scene.occluded(ray, &expected_shadows) ? 1 : 0);
+      }
+      for (const unsigned threads : {1u, 3u, 0u}) {
+        std::vector<Hit> hits(rays.size()), counted(rays.size());
+        std::vector<uint8_t> flags(rays.size()), counted_flags(rays.size());
+        AcceleratorCounters counters, shadows;
+        scene.intersect(rays, hits, threads);
+        scene.intersect(rays, counted, threads, &counters);
+        scene.occluded(rays, flags, threads);
+        scene.occluded(rays, counted_flags, threads, &shadows);
+        EXPECT_EQ(hits, expected);
+        EXPECT_EQ(counted, expected);
+        EXPECT_EQ(counters, expected_counters);
+        EXPECT_EQ(flags, expected_flags);
+        EXPECT_EQ(counted_flags, expected_flags);
+        EXPECT_EQ(shadows, expected_shadows);
+      }
+      std::vector<Hit> short_by_one(rays.size() - 1);
+      EXPECT_EQ(error_of([&] { scene.intersect(rays, short_by_one); }).code, ErrorCode::kUsage);
+    }
+}
+
+TEST(Accelerator, TellsProgressAndCanBeCancelled) {
+  const TriangleMesh mesh = random_mesh(3000, 17);
+  for (const unsigned threads : {1u, 2u}) {
+    std::vector<double> told;
+    AcceleratorOptions options;
+    options.threads = threads;
+    options.reinsert = true;
+    options.progress = [&](double done) {
+      told.push_back(done);
+      return true;
+    };
+    const Accelerator whole(mesh, some_areas(), options);
+    ASSERT_GE(told.size(), 4u);
+    EXPECT_TRUE(std::ranges::is_sorted(told));
+    EXPECT_NEAR(told.back(), 1, 1e-9);
+    const size_t calls = told.size();
+    for (const size_t stop : {size_t{1}, calls / 2, calls}) {
+      told.clear();
+      options.progress = [&](double done) {
+        told.push_back(done);
+        return told.size() < stop;
+      };
+      EXPECT_EQ(error_of([&] { Accelerator(mesh, some_areas(), options); }).code, ErrorCode::kCancelled);
+      EXPECT_EQ(told.size(), stop);
+    }
+  }
+}
+
 TEST(Accelerator, WorksWithoutAreasAndWithoutTriangles) {
   const Accelerator no_areas(random_mesh(20, 7));
   AcceleratorCounters counters;

@@ -57,7 +57,8 @@ struct Combination {
   Accelerator accelerator;
 };
 
-/// Each recipe for all areas that it is valid for, with list and octree; the global trees in turn, and each alone.
+/// Each recipe for all areas that it is valid for, with list and octree; the global trees in turn, and each alone. Half
+/// of each kind is searched as binary trees, half as wide ones.
 std::vector<Combination> all_combinations(const TriangleMesh& mesh, const std::vector<InfluenceArea>& areas) {
   const Registry registry = default_registry();
   const auto shared_mesh = std::make_shared<const TriangleMesh>(mesh);
@@ -66,11 +67,15 @@ std::vector<Combination> all_combinations(const TriangleMesh& mesh, const std::v
   for (const Recipe& recipe : all_recipes(registry)) {
     if (!is_valid_for(recipe, registry, nullptr)) continue;
     globals.push_back(std::make_shared<const Bvh>(build_global_tree(mesh, recipe, registry)));
-    combinations.push_back({"global " + recipe_name(recipe), Accelerator(shared_mesh, {}, globals.back())});
+    const bool wide = globals.size() % 2 == 0;
+    combinations.push_back(
+        {"global " + recipe_name(recipe),
+         Accelerator(shared_mesh, {}, globals.back(), {}, wide ? Traversal::kWide : Traversal::kBinary)});
     Bvh reinserted = *globals.back();
     reinsert(reinserted);
     combinations.push_back({"reinserted " + recipe_name(recipe),
-                            Accelerator(shared_mesh, {}, std::make_shared<const Bvh>(std::move(reinserted)))});
+                            Accelerator(shared_mesh, {}, std::make_shared<const Bvh>(std::move(reinserted)), {},
+                                        wide ? Traversal::kBinary : Traversal::kWide)});
   }
   for (const Recipe& recipe : all_recipes(registry)) {
     std::vector<LocalTree> locals;
@@ -79,8 +84,11 @@ std::vector<Combination> all_combinations(const TriangleMesh& mesh, const std::v
         locals.push_back(build_local_tree(mesh, area, recipe, registry, {}, sample_rays(&area)));
     const auto& global = globals[combinations.size() % globals.size()];
     for (const TopLevelKind kind : {TopLevelKind::kList, TopLevelKind::kOctree}) {
+      const bool wide = (kind == TopLevelKind::kOctree) == (combinations.size() / 2 % 2 == 0);
       const std::string name = recipe_name(recipe) + (kind == TopLevelKind::kList ? " list" : " octree");
-      combinations.push_back({name, Accelerator(shared_mesh, locals, global, {kind, 4})});
+      combinations.push_back(
+          {name + (wide ? " wide" : " binary"),
+           Accelerator(shared_mesh, locals, global, {kind, 4}, wide ? Traversal::kWide : Traversal::kBinary)});
     }
   }
   return combinations;
@@ -141,13 +149,19 @@ bool identical(const Hit& a, const Hit& b) {
   return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
-/// All rays through one combination.
+/// All rays through one combination: counted and not, one by one and as arrays.
 Tally compare(const Combination& combination, const std::vector<Ray>& rays, const std::vector<Hit>& expected) {
   Tally tally;
+  const Accelerator& accelerator = combination.accelerator;
   AcceleratorCounters counters;
+  std::vector<Hit> counted(rays.size());
+  std::vector<uint8_t> shadows(rays.size());
+  accelerator.intersect(rays, counted, 1, &counters);
+  accelerator.occluded(rays, shadows, 1);
   for (size_t i = 0; i < rays.size(); ++i) {
-    const Hit got = combination.accelerator.intersect(rays[i], &counters);
-    const bool shadow = combination.accelerator.occluded(rays[i]);
+    const Hit plain = i % 4 == 0 ? accelerator.intersect(rays[i]) : counted[i];
+    const Hit& got = identical(plain, expected[i]) ? counted[i] : plain;
+    const bool shadow = shadows[i] != 0;
     tally.comparisons += 2;
     if (identical(got, expected[i]) && shadow == is_hit(expected[i])) continue;
     ++tally.differences;

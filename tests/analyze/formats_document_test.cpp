@@ -1,5 +1,4 @@
 // docs/formats.md lists every metric with its unit and meaning.
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -8,12 +7,13 @@
 
 #include "raygrain/fields.h"
 
+#include "support/shared.h"
+
 namespace raygrain {
 namespace {
 
 TEST(FormatsDocument, ListsEveryField) {
-  const std::filesystem::path tests = std::filesystem::path(__FILE__).parent_path().parent_path();
-  std::ifstream file(tests.parent_path() / "docs" / "formats.md");
+  std::ifstream file(test::source_folder() / "docs" / "formats.md");
   const std::string document{std::istreambuf_iterator<char>(file), {}};
   for (const Field& field : fields()) {
     const std::string begin = "\n| `" + std::string(field.name) + "` | " + std::string(field.unit) + " | ";

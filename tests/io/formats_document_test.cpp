@@ -14,8 +14,7 @@ namespace raygrain {
 namespace {
 
 std::string formats_document() {
-  const std::filesystem::path tests = std::filesystem::path(__FILE__).parent_path().parent_path();
-  std::ifstream file(tests.parent_path() / "docs" / "formats.md");
+  std::ifstream file(test::source_folder() / "docs" / "formats.md");
   return {std::istreambuf_iterator<char>(file), {}};
 }
 

@@ -1,7 +1,6 @@
 #include "support/shared.h"
 
 #include <cstdlib>
-#include <filesystem>
 
 #include <unistd.h>
 
@@ -12,6 +11,10 @@ std::optional<std::string> shared_scene(const std::string& file_name) {
   const std::filesystem::path path = std::filesystem::path(folder ? folder : RAYGRAIN_SHARED_SCENES) / file_name;
   if (!std::filesystem::exists(path)) return std::nullopt;
   return path.string();
+}
+
+std::filesystem::path source_folder() {
+  return RAYGRAIN_SOURCE_FOLDER;
 }
 
 TemporaryFolder::TemporaryFolder() {

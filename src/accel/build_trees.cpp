@@ -1,0 +1,92 @@
+#include "accel/build_trees.h"
+
+#include "raygrain/refine.h"
+
+#include "accel/joint_progress.h"
+#include "base/parallel.h"
+
+namespace raygrain {
+
+namespace {
+
+constexpr double kBuilt = 0.8;  // share of a tree's progress at which its wide form is begun
+
+struct Global {
+  std::shared_ptr<const Bvh> tree;
+  RayMeasure measure;
+};
+
+Global build_global(const TriangleMesh& mesh, const AcceleratorOptions& options, std::span<const Ray> samples,
+                    JointProgress& progress) {
+  Recipe recipe = options.global;
+  if (options.quality) recipe.builder = builder_name(*options.quality);
+  const double built = options.reinsert ? kBuilt / 2 : kBuilt;
+  Bvh tree = build_global_tree(mesh, recipe, options.registry, nullptr, samples,
+                               {options.threads, progress.part(0, 0, built)});
+  const BuildOptions build = make_build_options(recipe, options.registry, {nullptr, samples});
+  if (options.reinsert) {
+    ReinsertOptions reinsertion;
+    reinsertion.threads = options.threads;
+    reinsertion.costs = build.costs;
+    reinsertion.progress = progress.part(0, built, kBuilt);
+    raygrain::reinsert(tree, build.strategy.measure, reinsertion);
+  }
+  return {std::make_shared<const Bvh>(std::move(tree)), build.strategy.measure};
+}
+
+}  // namespace
+
+SearchTree make_search_tree(const TriangleMesh& mesh, std::shared_ptr<const Bvh> binary, const RayMeasure& measure,
+                            Traversal traversal, std::optional<Isa> isa) {
+  if (traversal == Traversal::kBinary) return {mesh, std::move(binary)};
+  WideBvh wide(*binary, mesh, {.measure = measure, .isa = isa});
+  return {mesh, std::move(binary), std::move(wide)};
+}
+
+std::vector<Coverage> build_coverages(const std::shared_ptr<const TriangleMesh>& mesh,
+                                      std::span<const InfluenceArea> areas, const AcceleratorOptions& options) {
+  if (!options.coverage || options.traversal == Traversal::kBinary) return {};
+  CoverageOptions coverage = *options.coverage;
+  coverage.threads = options.threads;
+  if (!coverage.isa) coverage.isa = options.isa;
+  std::vector<Coverage> coverages(areas.size());
+  parallel_for(areas.size(), 1, options.threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) coverages[i] = Coverage(mesh, areas[i], coverage);
+  });
+  return coverages;
+}
+
+/// One task per tree, the global one first because it is the longest.
+BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> areas,
+                       const AcceleratorOptions& options) {
+  const auto samples = [&](const InfluenceArea* area) {
+    return options.samples ? options.samples(area) : std::vector<Ray>{};
+  };
+  JointProgress progress(options.progress, areas.size() + 1);
+  BuiltTrees trees;
+  trees.locals.resize(areas.size());
+  std::vector<std::optional<SearchTree>> searches(areas.size());
+  const auto build_local = [&](size_t i) {
+    const InfluenceArea& area = areas[i];
+    LocalTree& local = trees.locals[i];
+    local = build_local_tree(mesh, area, options.local, options.registry, options.membership, samples(&area),
+                             {options.threads, progress.part(i + 1, 0, kBuilt)});
+    searches[i] = make_search_tree(mesh, local.tree, local.measure, options.traversal, options.isa);
+  };
+  const auto build = [&](size_t task) {
+    if (task > 0) {
+      build_local(task - 1);
+    } else {
+      Global global = build_global(mesh, options, samples(nullptr), progress);
+      trees.global = make_search_tree(mesh, std::move(global.tree), global.measure, options.traversal, options.isa);
+    }
+    progress.reach(task, 1);
+  };
+  parallel_for(areas.size() + 1, 1, options.threads, [&](size_t begin, size_t end) {
+    for (size_t task = begin; task < end; ++task) build(task);
+  });
+  for (std::optional<SearchTree>& search : searches) trees.local_searches.push_back(std::move(*search));
+  return trees;
+}
+
+}  // namespace raygrain
