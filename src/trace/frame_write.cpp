@@ -40,6 +40,7 @@ void set_sizes(FrameMemory& tree, const Bounds& bounds) {
   tree.middle = 0.5 * (lo + hi);
   tree.half = 0.5 * (hi - lo) * (1 + 0x1p-40);
   tree.depth = std::max(std::abs(lo), std::abs(hi));
+  tree.least_slope = 0x1p-40 * tree.width / tree.depth;
 }
 
 class FrameWriter {

@@ -147,8 +147,7 @@ struct ColumnTriangles {
   }
 };
 
-/// A cone against triangles: from the middle of the leaf's depths to the plane's depth there, which is near where the
-/// ray crosses it.
+/// A cone against triangles: where the ray, followed from the middle of the leaf's depths, crosses each plane.
 struct ConeTriangles {
   FrameLimits limits;
   float x0, y0, slope_x, slope_y, error, slope;
@@ -163,24 +162,28 @@ struct ConeTriangles {
         slope(std::max(std::abs(query.slope_x), std::abs(query.slope_y)) * (1 + 0x1p-20f)) {}
 
   HWY_INLINE uint32_t operator()(const FrameLanes& lanes, FrameVec lo, FrameVec hi, FrameCandidates& found) const {
-    const float half = 1.5f * lanes.leaf.half(), middle = lanes.leaf.middle();
+    const float half = lanes.leaf.half(), middle = lanes.leaf.middle();
     const FrameVec p = lanes.field(FrameLeaf::kP), q = lanes.field(FrameLeaf::kQ);
     const FrameVec x = all(x0 + slope_x * middle), y = all(y0 + slope_y * middle);
-    const FrameVec z = hn::MulAdd(p, x, hn::MulAdd(q, y, lanes.field(FrameLeaf::kR)));
-    const FrameVec p_size = hn::Abs(p), q_size = hn::Abs(q);
-    const FrameVec lean = hn::MulAdd(p_size, all(std::abs(slope_x) * (1 + 0x1p-20f)),
-                                     hn::Mul(q_size, all(std::abs(slope_y) * (1 + 0x1p-20f))));
-    const FrameVec own = hn::MulAdd(hn::Add(p_size, q_size), all(error), lanes.field(FrameLeaf::kError));
-    const FrameVec reach = hn::MulAdd(lean, all(half), own);
-    const FrameVec z_radius = hn::Min(reach, all(2 * half));
-    const FrameVec z_here = hn::Max(hn::Min(z, all(middle + half)), all(middle - half));
+    const FrameVec plane = hn::MulAdd(p, x, hn::MulAdd(q, y, lanes.field(FrameLeaf::kR)));
+    const FrameVec along = hn::MulAdd(p, all(slope_x), hn::Mul(q, all(slope_y)));
+    const FrameVec stretch = hn::Div(all(1), hn::Sub(all(1), along));
+    const FrameVec away = hn::Mul(hn::Sub(plane, all(middle)), stretch), z = hn::Add(all(middle), away);
+    const FrameVec steep = hn::Add(hn::Abs(p), hn::Abs(q)), size = hn::Abs(stretch);
+    const FrameVec own = hn::MulAdd(steep, all(error), lanes.field(FrameLeaf::kError));
+    const FrameVec doubt = hn::MulAdd(hn::Mul(steep, all(slope)), size, all(2));
+    const FrameVec radius = hn::MulAdd(hn::Mul(own, size), all(1 + 0x1p-18f),
+                                       hn::Mul(all(0x1p-21f), hn::MulAdd(hn::Abs(away), doubt, all(std::abs(middle)))));
+    // Comparisons with what is not a number are false, and nothing is sure then.
+    const FrameVec most = all(2 * half), top = all(middle + half), bottom = all(middle - half);
+    const FrameMask is_known = hn::Le(radius, most), is_low = hn::Le(z, top), is_high = hn::Le(bottom, z);
+    const FrameVec z_radius = hn::IfThenElse(is_known, radius, most);
+    const FrameVec z_here = hn::IfThenElse(is_low, hn::IfThenElse(is_high, z, bottom), top);
     const FrameVec x_here = hn::MulAdd(z_here, all(slope_x), all(x0)),
                    y_here = hn::MulAdd(z_here, all(slope_y), all(y0));
-    const FrameVec radius = hn::MulAdd(z_radius, all(slope), all(error));
-    if (limits.decide(lanes, x_here, y_here, radius, z_here, z_radius, lo, hi, found) == 0) return 0;
-    // It crosses the plane within the leaf's depths.
-    const FrameVec away = hn::Abs(hn::Sub(z, all(middle)));
-    found.sure &= bits_of(hn::Le(hn::Add(away, reach), all(half)));
+    const FrameVec side = hn::MulAdd(z_radius, all(slope), all(error));
+    if (limits.decide(lanes, x_here, y_here, side, z_here, z_radius, lo, hi, found) == 0) return 0;
+    found.sure &= bits_of(hn::And(is_known, hn::And(is_low, is_high)));
     return found.possible;
   }
 };
