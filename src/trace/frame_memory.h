@@ -82,7 +82,7 @@ struct FrameMemory {
 
 /// A ray prepared for the kernels; errors are allowed for (docs/theory-frames.md, section "Columns" and "Cones").
 struct FrameQuery {
-  Column column;  // for cones too, with its z only
+  FrameColumn column;  // for cones too, with its z only
   float tie_constant, tie_linear, tie_square;
 
   float x0, y0, slope_x, slope_y;      // cones: x = x0 + slope_x z

@@ -89,7 +89,7 @@ struct Depths {
   }
 };
 
-void set_sides(Column& column, double x, double y, double radius) {
+void set_sides(FrameColumn& column, double x, double y, double radius) {
   column.box.lo.x = loosely_below(x - radius);
   column.box.lo.y = loosely_below(y - radius);
   column.box.hi.x = loosely_above(x + radius);
@@ -175,7 +175,7 @@ FrameUse prepare(const FrameMemory& tree, const Ray& ray, FrameQuery& query) {
   if (!is_column && !(slope * 2 * tree.half <= kConeDrift * tree.width && line.error <= kColumnDrift * tree.width))
     return FrameUse::kUnfit;
 
-  Column& column = query.column;
+  FrameColumn& column = query.column;
   column.ascending = m.z > 0;
   const double lo = std::max(static_cast<double>(tree.depths[0]), depths.lo);
   const double hi = std::min(static_cast<double>(tree.depths[1]), depths.hi);
