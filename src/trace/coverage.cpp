@@ -27,7 +27,7 @@ namespace {
 constexpr size_t kRaysPerTile = 4;
 /// ... and the grid does not fit the caches anyway.
 constexpr size_t kSmallGrid = size_t{1} << 20;
-constexpr size_t kMostRaysPerTask = size_t{1} << 18;
+constexpr size_t kMostRaysPerTask = size_t{1} << 16;  // so many fit a cache with their answers
 constexpr size_t kLeastRaysPerTask = 4096;
 
 size_t bytes_of(const CoverageGrid& grid) {

@@ -41,16 +41,19 @@ HWY_INLINE Floats turn(const CoverageGrid& grid, size_t row, Floats x, Floats y,
   return hn::MulAdd(hn::Set(d, r.x), x, hn::MulAdd(hn::Set(d, r.y), y, hn::Mul(hn::Set(d, r.z), z)));
 }
 
-/// Loads `count` rays of the batch from number `begin` on and finds their tiles.
-HWY_INLINE void place(const CoverageGrid& grid, const ColumnBatch& batch, size_t begin, size_t count, Block& block) {
-  const FloatTag d;
-  const hn::RebindToSigned<FloatTag> di;
+/// Loads `count` rays of the batch from number `begin` on.
+HWY_INLINE void load(const ColumnBatch& batch, size_t begin, size_t count, Block& block) {
   for (size_t i = 0; i < count; ++i) {
-    block.number[i] =
-        batch.subset != nullptr ? batch.subset[begin + i] : static_cast<uint32_t>(batch.first + begin + i);
+    block.number[i] = batch.number(begin + i);
     block.points[i] = batch.rays.points[block.number[i]];
   }
-  const bool are_directions = batch.rays.kind == ColumnRays::Kind::kFrom;
+}
+
+/// Finds the tiles of the block's first `count` rays.
+HWY_INLINE void place(const CoverageGrid& grid, ColumnRays::Kind kind, size_t count, Block& block) {
+  const FloatTag d;
+  const hn::RebindToSigned<FloatTag> di;
+  const bool are_directions = kind == ColumnRays::Kind::kFrom;
   const Vec3 center = are_directions ? Vec3{} : grid.map.center;
   const Floats x_lo = hn::Set(d, grid.x_lo), y_lo = hn::Set(d, grid.y_lo), scale = hn::Set(d, grid.tiles_per_unit);
   const auto last_x = hn::Set(di, static_cast<int32_t>(grid.tiles_x) - 1);

@@ -18,15 +18,17 @@ namespace {
 void any(const CoverageGrid& grid, const ColumnBatch& batch, uint8_t* flags, std::vector<uint32_t>& rest,
          CoverageCounters& counters) {
   CoverageCounters counts;
-  ask(grid, batch, AnyHit{grid, batch, flags, counts}, rest, counts);
+  counts.rays = batch.count;
+  ask(grid, batch, AnyHit{grid, batch, flags, counts}, rest);
   counters.add(counts);
 }
 
 void nearest(const CoverageGrid& grid, const ColumnBatch& batch, Hit* hits, std::vector<uint32_t>& rest,
              CoverageCounters& counters) {
   CoverageCounters counts;
+  counts.rays = batch.count;
   Confirmations confirmations;
-  ask(grid, batch, NearestHit{grid, batch, hits, counts, confirmations}, rest, counts);
+  ask(grid, batch, NearestHit{grid, batch, hits, counts, confirmations}, rest);
   counters.add(counts);
 }
 

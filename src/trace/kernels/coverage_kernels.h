@@ -34,6 +34,8 @@ struct ColumnBatch {
   const uint32_t* subset = nullptr;  // null: first, first + 1, ...
   uint32_t first = 0, count = 0;
   bool sorted = false;
+
+  uint32_t number(size_t i) const { return subset != nullptr ? subset[i] : first + static_cast<uint32_t>(i); }
 };
 
 /// One ray as a column: from depth s on, up to depth `end` or from it down.
