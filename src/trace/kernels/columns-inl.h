@@ -43,8 +43,14 @@ HWY_INLINE Floats turn(const CoverageGrid& grid, size_t row, Floats x, Floats y,
 
 /// Loads `count` rays of the batch from number `begin` on.
 HWY_INLINE void load(const ColumnBatch& batch, size_t begin, size_t count, Block& block) {
+  if (batch.subset == nullptr) {
+    const Vec3* points = batch.rays.points + batch.first + begin;
+    std::copy(points, points + count, block.points);
+    for (size_t i = 0; i < count; ++i) block.number[i] = batch.number(begin + i);
+    return;
+  }
   for (size_t i = 0; i < count; ++i) {
-    block.number[i] = batch.number(begin + i);
+    block.number[i] = batch.subset[begin + i];
     block.points[i] = batch.rays.points[block.number[i]];
   }
 }
@@ -108,37 +114,66 @@ HWY_INLINE uint16_t code_of(const CoverageTile& tile, float s) {
   return static_cast<uint16_t>(std::min(std::max(code, 0.0f), 65535.0f));
 }
 
-alignas(16) constexpr uint32_t kDepthLane[4] = {0, 0, 0, 0xffffffffu};
-
-/// A column against one triangle: bit i for each lane.
-struct Verdict {
-  uint32_t possible, sure;
-};
-
 using FourTag = hn::CappedTag<float, 4>;
 constexpr size_t kFourLanes = hn::MaxLanes(FourTag());
+constexpr size_t kFourParts = 4 / kFourLanes;
+alignas(16) constexpr uint32_t kDepthLane[4] = {0, 0, 0, 0xffffffffu};
 
-HWY_INLINE Verdict meet(const CoverageTriangle& triangle, float x, float y, float s) {
-  const FourTag d;
-  const auto px = hn::Set(d, x), py = hn::Set(d, y), ps = hn::Set(d, s);
-  const auto margin = hn::Set(d, triangle.margin);
-  Verdict verdict{0, 0};
-  for (size_t i = 0; i < 4; i += kFourLanes) {
-    auto e = hn::MulAdd(hn::Load(d, triangle.a + i), px,
-                        hn::MulAdd(hn::Load(d, triangle.b + i), py, hn::Load(d, triangle.c + i)));
-    if (i + kFourLanes == 4) {
-      const auto last = hn::Load(d, &triangle.margin + i);
-      const auto is_depth = hn::MaskFromVec(hn::BitCast(d, hn::Load(hn::RebindToUnsigned<FourTag>(), kDepthLane + i)));
-      e = hn::Add(e, hn::IfThenElseZero(is_depth, hn::Mul(last, ps)));
-    }
-    uint8_t possible[8] = {}, sure[8] = {};
-    hn::StoreMaskBits(d, hn::Ge(e, hn::Neg(margin)), possible);
-    hn::StoreMaskBits(d, hn::Gt(e, margin), sure);
-    verdict.possible |= static_cast<uint32_t>(possible[0]) << i;
-    verdict.sure |= static_cast<uint32_t>(sure[0]) << i;
+/// The four lanes of a triangle.
+struct Four {
+  hn::Vec<FourTag> part[kFourParts];
+
+  /// Bit i: lane i is at least, or above, the bound.
+  HWY_INLINE uint32_t at_least(float bound) const {
+    uint32_t result = 0;
+    for (size_t i = 0; i < kFourParts; ++i)
+      result |= bits(hn::Ge(part[i], hn::Set(FourTag(), bound))) << (i * kFourLanes);
+    return result;
   }
-  return verdict;
-}
+  HWY_INLINE uint32_t above(float bound) const {
+    uint32_t result = 0;
+    for (size_t i = 0; i < kFourParts; ++i)
+      result |= bits(hn::Gt(part[i], hn::Set(FourTag(), bound))) << (i * kFourLanes);
+    return result;
+  }
+
+ private:
+  static HWY_INLINE uint32_t bits(hn::Mask<FourTag> mask) {
+    uint8_t stored[8] = {};
+    hn::StoreMaskBits(FourTag(), mask, stored);
+    return stored[0];
+  }
+};
+
+/// A column in registers.
+struct Column {
+  hn::Vec<FourTag> x, y;
+
+  HWY_INLINE Column(float x_value, float y_value) : x(hn::Set(FourTag(), x_value)), y(hn::Set(FourTag(), y_value)) {}
+
+  /// a x + b y + c.
+  HWY_INLINE Four at(const CoverageTriangle& triangle) const {
+    const FourTag d;
+    Four result;
+    for (size_t i = 0; i < kFourParts; ++i) {
+      const size_t lane = i * kFourLanes;
+      result.part[i] = hn::MulAdd(hn::Load(d, triangle.a + lane), x,
+                                  hn::MulAdd(hn::Load(d, triangle.b + lane), y, hn::Load(d, triangle.c + lane)));
+    }
+    return result;
+  }
+  /// The same with ahead * s in lane 3.
+  HWY_INLINE Four at(const CoverageTriangle& triangle, hn::Vec<FourTag> s) const {
+    const FourTag d;
+    Four result = at(triangle);
+    const size_t lane = 4 - kFourLanes;
+    const auto depth_lane =
+        hn::MaskFromVec(hn::BitCast(d, hn::Load(hn::RebindToUnsigned<FourTag>(), kDepthLane + lane)));
+    auto& last = result.part[kFourParts - 1];
+    last = hn::Add(last, hn::IfThenElseZero(depth_lane, hn::Mul(hn::Load(d, &triangle.margin + lane), s)));
+    return result;
+  }
+};
 
 }  // namespace
 }  // namespace raygrain::HWY_NAMESPACE

@@ -41,13 +41,17 @@ HWY_INLINE bool confirm(const CoverageGrid& grid, uint32_t id, const Ray& ray, H
 template <class Asks>
 HWY_INLINE bool meets_any(const CoverageGrid& grid, const Waiting& w, const Asks& asks, uint64_t& tests) {
   const CoverageReference* reference = grid.references.data() + w.first;
-  for (uint32_t i = 0; i < w.count; ++i) {
-    if (reference[i].top < w.code) break;
-    const CoverageTriangle& triangle = grid.triangles[reference[i].triangle()];
-    const Verdict verdict = meet(triangle, w.x, w.y, w.s);
+  const CoverageTriangle* triangles = grid.triangles.data();
+  const Column column(w.x, w.y);
+  const auto depth = hn::Set(FourTag(), w.s);
+  const uint32_t count = w.count, code = w.code;
+  for (uint32_t i = 0; i < count; ++i) {
+    if (reference[i].top < code) break;
+    const CoverageTriangle& triangle = triangles[reference[i].triangle()];
+    const Four lanes = column.at(triangle, depth);
     ++tests;
-    if (verdict.possible != 15) continue;
-    if (verdict.sure == 15 || asks(triangle.id)) return true;
+    if (lanes.at_least(-triangle.margin) != 15) continue;
+    if (lanes.above(triangle.margin) == 15 || asks(triangle.id)) return true;
   }
   for (const uint32_t id : grid.near_triangles)
     if (asks(id)) return true;
@@ -103,6 +107,9 @@ HWY_INLINE uint32_t first_hits(const CoverageGrid& grid, float x, float y, const
   };
   constexpr size_t kMostCandidates = 8;
   const CoverageReference* reference = grid.references.data() + list.first;
+  const CoverageTriangle* triangles = grid.triangles.data();
+  const CoverageTile& tile = grid.tiles[list.tile];
+  const Column column(x, y);
   Candidate candidates[kMostCandidates];  // NOLINT: filled as far as size says
   size_t size = 0;
   float sure = -kInf;  // the first hit is not below this depth
@@ -113,20 +120,19 @@ HWY_INLINE uint32_t first_hits(const CoverageGrid& grid, float x, float y, const
     size = 0;
   };
   uint32_t i = 0;
-  for (; i < list.count; ++i) {
+  for (const uint32_t count = list.count; i < count; ++i) {
     if (reference[i].top < sure_code) break;
-    const CoverageTriangle& triangle = grid.triangles[reference[i].triangle()];
-    const Verdict verdict = meet(triangle, x, y, 0);
-    if ((verdict.possible & 7) != 7) continue;
+    const CoverageTriangle& triangle = triangles[reference[i].triangle()];
+    const Four lanes = column.at(triangle);
+    if ((lanes.at_least(-triangle.margin) & 7) != 7) continue;
     float depth = kInf, radius = 0;
-    if (triangle.ahead < 0) {  // else it has no plane to speak of
-      const float per_ahead = -1 / triangle.ahead;
-      depth = (triangle.a[3] * x + triangle.b[3] * y + triangle.c[3]) * per_ahead;
-      radius = 2 * triangle.margin * per_ahead;
+    if (triangle.per_ahead > 0) {  // else it has no plane to speak of
+      depth = (triangle.a[3] * x + triangle.b[3] * y + triangle.c[3]) * triangle.per_ahead;
+      radius = 2 * triangle.margin * triangle.per_ahead;
       if (depth + radius < sure) continue;
-      if ((verdict.sure & 7) == 7 && depth - radius > sure) {
+      if (depth - radius > sure && (lanes.above(triangle.margin) & 7) == 7) {
         sure = depth - radius;
-        sure_code = code_of(grid.tiles[list.tile], sure) - 2;
+        sure_code = code_of(tile, sure) - 2;
       }
     }
     if (size == kMostCandidates) tell_all();
@@ -165,17 +171,7 @@ struct NearestHit {
     ++counters.confirmations;
     if (confirmations.add(id, number)) finish();
   }
-  void finish() const {
-    confirmations.decide(
-        *grid.mesh, batch.rays,
-        [this](uint32_t number) {
-          hwy::Prefetch(batch.rays.points + number);
-          hwy::Prefetch(hits + number);
-        },
-        [this](uint32_t number, const Hit& hit) {
-          if (is_nearer(hit, hits[number])) hits[number] = hit;
-        });
-  }
+  void finish() const { confirmations.decide(*grid.mesh, hits); }
 };
 
 /// Answers waiting rays in order; what later ones will read is fetched meanwhile.

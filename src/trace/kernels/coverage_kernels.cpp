@@ -27,7 +27,7 @@ void nearest(const CoverageGrid& grid, const ColumnBatch& batch, Hit* hits, std:
              CoverageCounters& counters) {
   CoverageCounters counts;
   counts.rays = batch.count;
-  Confirmations confirmations;
+  Confirmations confirmations(batch.rays);
   ask(grid, batch, NearestHit{grid, batch, hits, counts, confirmations}, rest);
   counters.add(counts);
 }
