@@ -1,10 +1,12 @@
 // Wide trees in ray space: rays of one direction or one point as columns, rays near them as cones, one at a time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "raygrain/build.h"
 #include "raygrain/bvh.h"
@@ -15,6 +17,19 @@
 #include "raygrain/wide.h"
 
 namespace raygrain {
+
+/// The corners of a mesh's triangles, triangle by triangle: 36 bytes each, made once for all trees in ray space.
+class TriangleCorners {
+ public:
+  explicit TriangleCorners(const TriangleMesh& mesh);
+
+  size_t size() const { return corners_.size(); }
+  const std::array<Vec3, 3>& at_id(uint32_t triangle) const { return corners_[triangle]; }
+  size_t memory_bytes() const { return corners_.size() * sizeof(corners_[0]); }
+
+ private:
+  std::vector<std::array<Vec3, 3>> corners_;
+};
 
 /// How a tree in ray space sees a ray.
 enum class FrameUse : uint8_t {
@@ -31,10 +46,10 @@ class FrameTree {
  public:
   FrameTree();  // empty: every ray misses
 
-  /// Collapses `tree`, built over frame_bounds of triangles: its prims are ids of `mesh`, which is shared. The same
+  /// Collapses `tree`, built over frame_bounds of triangles: its prims are triangle ids. The same
   /// tree gives the same bytes. Throws Error: kUsage for options out of range, an instruction set that this CPU lacks,
   /// or a tree that reaches beyond 2^30 in the frame or is smaller than 2^-30; otherwise as WideBvh.
-  FrameTree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleMesh> mesh,
+  FrameTree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleCorners> corners,
             const WideOptions& options = {});
 
   FrameUse use_of(const Ray& ray) const;
@@ -55,7 +70,7 @@ class FrameTree {
   Isa isa() const;
   size_t node_count() const;
   size_t leaf_count() const;
-  size_t memory_bytes() const;  // nodes and leaves, without the mesh
+  size_t memory_bytes() const;  // nodes and leaves, without the corners
 
  private:
   struct Data;
@@ -72,9 +87,9 @@ struct FrameBuildOptions {
   std::optional<Isa> isa = std::nullopt;
 };
 
-/// Builds the tree over these triangles of the mesh, as far as they lie in the frame's domain. Nothing where a tree in
+/// Builds the tree over these triangles (ids), as far as they lie in the frame's domain. Nothing where a tree in
 /// this frame cannot be made (see FrameTree).
-std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr<const TriangleMesh> mesh,
+std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr<const TriangleCorners> corners,
                                           std::span<const uint32_t> triangles, const FrameBuildOptions& options = {},
                                           double* cost = nullptr);
 

@@ -12,19 +12,21 @@
 namespace raygrain {
 namespace {
 
+Bounds bounds_of(const RayFrame& frame, const std::array<Vec3, 3>& corners, const Bounds& box) {
+  return frame_bounds(frame, corners[0], corners[1], corners[2], box);
+}
+
 struct FramePrimitives {
   std::vector<uint32_t> ids;
   std::vector<Bounds> bounds;
   std::vector<Vec3> centers;
 };
 
-FramePrimitives primitives_in(const RayFrame& frame, const TriangleMesh& mesh, std::span<const uint32_t> triangles,
-                              unsigned threads) {
+FramePrimitives primitives_in(const RayFrame& frame, const TriangleCorners& corners,
+                              std::span<const uint32_t> triangles, unsigned threads) {
   std::vector<Bounds> all(triangles.size());
   parallel_for(triangles.size(), 1024, threads, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i)
-      all[i] =
-          frame_bounds(frame, mesh.vertex(triangles[i], 0), mesh.vertex(triangles[i], 1), mesh.vertex(triangles[i], 2));
+    for (size_t i = begin; i < end; ++i) all[i] = bounds_of(frame, corners.at_id(triangles[i]), frame.domain);
   });
   FramePrimitives result;
   for (size_t i = 0; i < triangles.size(); ++i) {
@@ -54,16 +56,16 @@ bool fits_floats(const Bounds& scene) {
 
 }  // namespace
 
-std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr<const TriangleMesh> mesh,
+std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr<const TriangleCorners> corners,
                                           std::span<const uint32_t> triangles, const FrameBuildOptions& options,
                                           double* cost) {
-  if (mesh == nullptr) throw Error(ErrorCode::kUsage, "build_frame_tree", "has no mesh");
+  if (corners == nullptr) throw Error(ErrorCode::kUsage, "build_frame_tree", "has no corners");
   if (!(options.weights.x >= 0 && options.weights.y >= 0 && options.weights.z > 0 && options.z_term >= 0))
     throw Error(ErrorCode::kUsage, "FrameBuildOptions", "weights and z_term must not be negative, nor weights.z zero");
-  FramePrimitives primitives = primitives_in(frame, *mesh, triangles, options.threads);
+  FramePrimitives primitives = primitives_in(frame, *corners, triangles, options.threads);
   Bounds scene;
   for (const Bounds& box : primitives.bounds) scene.extend(box.lo), scene.extend(box.hi);
-  if (primitives.ids.empty()) return FrameTree(frame, {}, std::move(mesh), {.isa = options.isa});
+  if (primitives.ids.empty()) return FrameTree(frame, {}, std::move(corners), {.isa = options.isa});
   if (!fits_floats(scene)) return {};
 
   BuildOptions build;
@@ -71,15 +73,16 @@ std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr
   build.parameters.bins = 32;
   build.parameters.max_levels = 64;
   build.threads = options.threads;
-  build.clip = [&](uint32_t i, const Bounds& box) {
-    const uint32_t t = primitives.ids[i];
-    return frame_bounds(frame, mesh->vertex(t, 0), mesh->vertex(t, 1), mesh->vertex(t, 2), box);
-  };
+  build.clip = [&](uint32_t i, const Bounds& box) { return bounds_of(frame, corners->at_id(primitives.ids[i]), box); };
   Bvh tree = options.spatial ? build_spatial(primitives.bounds, primitives.centers, build)
                              : build_binned(primitives.bounds, primitives.centers, build);
   for (uint32_t& primitive : tree.prims) primitive = primitives.ids[primitive];
   if (cost != nullptr) *cost = estimated_cost(tree, build.strategy.measure, build.costs);
-  return FrameTree(frame, tree, std::move(mesh), {.measure = build.strategy.measure, .isa = options.isa});
+  WideOptions w{.measure = build.strategy.measure, .isa = options.isa};
+  if (getenv("ML")) w.max_leaf_size = (uint32_t)atoi(getenv("ML"));
+  if (getenv("CT")) w.costs.triangle = (float)atof(getenv("CT"));
+  if (getenv("CL")) w.costs.leaf = (float)atof(getenv("CL"));
+  return FrameTree(frame, tree, std::move(corners), w);
 }
 
 }  // namespace raygrain

@@ -24,7 +24,11 @@ inline size_t triangles_of(FrameRef ref) {
   return ref & 15;
 }
 
-/// Boxes in the frame, rounded outward; those of missing children are empty (lo = infinity, hi = -infinity).
+/// A visit takes one entry off and puts at most eight on; whole vectors are written.
+inline constexpr size_t kFrameStackSize = kWideStackSize + kWidth;
+
+/// Boxes in the frame, rounded outward, farther ones first (by the least z); those of missing children are empty (lo =
+/// infinity, hi = -infinity).
 struct alignas(64) FrameNode {
   float lower[3][kWidth], upper[3][kWidth];
   FrameRef child[kWidth];
@@ -43,7 +47,10 @@ struct FrameLeaf {
   float middle() const { return floats()[0]; }
   float half() const { return floats()[1]; }
   const float* field(size_t index) const { return floats() + 2 + index * count; }
-  uint32_t id(size_t lane) const { return std::bit_cast<uint32_t>(field(kId)[lane]); }
+  uint32_t id(size_t lane) const { return std::bit_cast<uint32_t>(field(kId)[lane]) ^ kMask; }
+  /// Lanes that a leaf lacks read ids for numbers: as floats about 1, for arithmetic with denormal ones takes ages.
+  static float stored(uint32_t id) { return std::bit_cast<float>(id ^ kMask); }
+  static constexpr uint32_t kMask = 0x3f800000;
 
   static size_t size(size_t count) {
     const size_t bytes = (2 + kFields * count) * sizeof(float);
@@ -53,13 +60,14 @@ struct FrameLeaf {
 
 struct FrameMemory {
   RayFrame frame;
-  std::shared_ptr<const TriangleMesh> mesh;
+  std::shared_ptr<const TriangleCorners> corners;
   LineMemory memory;
   Bounds bounds;
-  std::array<float, 2> depths{};  // a little more than the bounds': what rays are followed through
-  double width = 0;               // no |x| or |y| of the bounds is greater
-  double reach = 0;               // for edges and planes
-  float edge_error = 0;           // of edge functions in float
+  std::array<float, 2> depths{};           // a little more than the bounds': what rays are followed through
+  double middle = 0, half = 0, depth = 0;  // of these depths, and the largest magnitude of them
+  double width = 0;                        // no |x| or |y| of the bounds is greater
+  double reach = 0;                        // for edges and planes
+  float edge_error = 0;                    // of edge functions in float
   size_t nodes = 0, leaves = 0;
 
   bool is_empty() const { return nodes == 0; }
@@ -90,7 +98,7 @@ struct FrameQuery {
 FrameUse prepare(const FrameMemory& tree, const Ray& ray, FrameQuery& query);
 
 /// The tree in memory.
-FrameMemory write_frame_tree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleMesh> mesh,
+FrameMemory write_frame_tree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleCorners> corners,
                              const WideOptions& options);
 
 }  // namespace raygrain

@@ -6,8 +6,6 @@
 
 #include "raygrain/error.h"
 
-#include "build/estimate.h"
-#include "geometry/rounding.h"
 #include "trace/frame_memory.h"
 #include "trace/kernels/frame_kernels.h"
 
@@ -20,53 +18,6 @@ struct FrameTree::Data {
 };
 
 namespace {
-
-/// Rays that leave their middle line by no more than this share of the tree's width are columns.
-constexpr double kColumnDrift = 0x1p-14;
-/// Rays that leave it by no more than this along the whole tree are cones.
-constexpr double kConeDrift = 0.5;
-
-constexpr double kLeastSlope = 0x1p-40;  // of the tree's width, over its depth
-
-/// One coordinate of a cone: x = at + slope (z - z0), wrong by at most `error`.
-struct ConeSide {
-  float intercept, slope, inverse, near, far;
-  double error;  // of intercept + slope z, evaluated in float
-};
-
-ConeSide cone_side(const FrameMemory& tree, const FrameSegment& s, double at, double slope, double error) {
-  const double depth =
-      std::max(std::abs(static_cast<double>(tree.depths[0])), std::abs(static_cast<double>(tree.depths[1])));
-  const double whole = static_cast<double>(tree.depths[1]) - static_cast<double>(tree.depths[0]);
-  const double steep = std::copysign(std::max(std::abs(slope), kLeastSlope * tree.width / whole), slope);
-  ConeSide side{};
-  side.inverse = static_cast<float>(1 / steep);
-  const double inverse = side.inverse, used = 1 / inverse;
-  error += (std::abs(used - slope) + s.slope_error) * whole;
-  const double offset = s.z0 - at * inverse;
-  const double slack = std::abs(inverse) * (error + 0x1p-22 * tree.width) + 0x1p-22 * depth;
-  side.near = loosely_below(offset - slack);
-  side.far = loosely_above(offset + slack);
-  side.slope = static_cast<float>(used);
-  side.intercept = static_cast<float>(at - used * s.z0);
-  side.error = error + 0x1p-21 * (tree.reach + std::abs(used) * depth + std::abs(static_cast<double>(side.intercept)));
-  return side;
-}
-
-void set_cone(const FrameMemory& tree, const FrameSegment& s, FrameQuery& query) {
-  const ConeSide x = cone_side(tree, s, s.x0, s.slope_x, s.error), y = cone_side(tree, s, s.y0, s.slope_y, s.error);
-  query.x0 = x.intercept;
-  query.y0 = y.intercept;
-  query.slope_x = x.slope;
-  query.slope_y = y.slope;
-  query.inverse_x = x.inverse;
-  query.inverse_y = y.inverse;
-  query.near_x = x.near;
-  query.far_x = x.far;
-  query.near_y = y.near;
-  query.far_y = y.far;
-  query.error = loosely_above(std::max(x.error, y.error));
-}
 
 const FrameKernels& kernels_of(Isa isa) {
   const FrameKernels* found = frame_kernels(isa);
@@ -86,36 +37,20 @@ Ray shortened(const Ray& ray, float from, float to) {
 
 }  // namespace
 
-FrameUse prepare(const FrameMemory& tree, const Ray& ray, FrameQuery& query) {
-  FrameSegment s;
-  query.column.box = {};
-  if (!(ray.tmin <= ray.tmax)) return FrameUse::kColumn;
-  const FrameFit fit = make_segment(tree.frame, ray, tree.depths, s);
-  if (fit == FrameFit::kUnfit) return FrameUse::kUnfit;
-  if (fit == FrameFit::kNothing) return FrameUse::kColumn;
-  query.tie_constant = loosely_above(s.tie_constant);
-  query.tie_linear = loosely_above(s.tie_linear);
-  query.tie_square = loosely_above(s.tie_square);
-  query.column = to_column(s);
-  if (drift(s) + s.error <= kColumnDrift * tree.width) {
-    query.column.radius *= 1 + 0x1p-20f;
-    return FrameUse::kColumn;
-  }
-  const double whole = static_cast<double>(tree.depths[1]) - static_cast<double>(tree.depths[0]);
-  const double slope = std::max(std::abs(s.slope_x), std::abs(s.slope_y));
-  if (!(slope * whole <= kConeDrift * tree.width && s.error <= kColumnDrift * tree.width)) return FrameUse::kUnfit;
-  set_cone(tree, s, query);
-  return FrameUse::kCone;
+TriangleCorners::TriangleCorners(const TriangleMesh& mesh) {
+  corners_.reserve(mesh.triangle_count());
+  for (uint32_t i = 0; i < mesh.triangle_count(); ++i)
+    corners_.push_back({mesh.vertex(i, 0), mesh.vertex(i, 1), mesh.vertex(i, 2)});
 }
 
 FrameTree::FrameTree() : data_(std::make_shared<const Data>()) {}
 
-FrameTree::FrameTree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleMesh> mesh,
+FrameTree::FrameTree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleCorners> corners,
                      const WideOptions& options) {
   const Isa isa = options.isa ? *options.isa : default_isa();
   const FrameKernels& table = kernels_of(isa);
-  if (mesh == nullptr) throw Error(ErrorCode::kUsage, "FrameTree", "has no mesh");
-  data_ = std::make_shared<const Data>(Data{write_frame_tree(frame, tree, std::move(mesh), options), isa, &table});
+  if (corners == nullptr) throw Error(ErrorCode::kUsage, "FrameTree", "has no corners");
+  data_ = std::make_shared<const Data>(Data{write_frame_tree(frame, tree, std::move(corners), options), isa, &table});
 }
 
 FrameUse FrameTree::use_of(const Ray& ray) const {

@@ -13,8 +13,8 @@
 namespace raygrain {
 namespace {
 
-Bounds bounds_of(const RayFrame& frame, const TriangleMesh& mesh, uint32_t triangle) {
-  return frame_bounds(frame, mesh.vertex(triangle, 0), mesh.vertex(triangle, 1), mesh.vertex(triangle, 2));
+Bounds bounds_of(const RayFrame& frame, const std::array<Vec3, 3>& corners) {
+  return frame_bounds(frame, corners[0], corners[1], corners[2]);
 }
 
 void set_sizes(FrameMemory& tree, const Bounds& bounds) {
@@ -36,6 +36,10 @@ void set_sizes(FrameMemory& tree, const Bounds& bounds) {
     return z + sign * margin * (tree.frame.is_projective() ? std::abs(z) : depth);
   };
   tree.depths = {float_below(out(bounds.lo.z, -1)), float_above(out(bounds.hi.z, 1))};
+  const double lo = tree.depths[0], hi = tree.depths[1];
+  tree.middle = 0.5 * (lo + hi);
+  tree.half = 0.5 * (hi - lo) * (1 + 0x1p-40);
+  tree.depth = std::max(std::abs(lo), std::abs(hi));
 }
 
 class FrameWriter {
@@ -59,11 +63,10 @@ class FrameWriter {
     const size_t count = ids_.size(), offset = plan_.node_bytes() + item.offset;
     auto* out = new (tree_.memory.data() + offset) float[2 + FrameLeaf::kFields * count];
     const auto field = [&](size_t k, size_t lane) -> float& { return out[2 + k * count + lane]; };
-    const TriangleMesh& mesh = *tree_.mesh;
     const Bounds& leaf = plan_.bounds(item);
     double most_error = 0;
     for (size_t lane = 0; lane < count; ++lane) {
-      const Vec3 a = mesh.vertex(ids_[lane], 0), b = mesh.vertex(ids_[lane], 1), c = mesh.vertex(ids_[lane], 2);
+      const auto& [a, b, c] = tree_.corners->at_id(ids_[lane]);
       const Bounds box = frame_bounds(tree_.frame, a, b, c, leaf);
       const FrameTriangle t = frame_triangle(tree_.frame, a, b, c, is_empty(box) ? leaf : box, tree_.reach);
       for (size_t k = 0; k < 3; ++k) {
@@ -75,7 +78,7 @@ class FrameWriter {
       field(FrameLeaf::kQ, lane) = static_cast<float>(t.q);
       field(FrameLeaf::kR, lane) = static_cast<float>(t.r);
       field(FrameLeaf::kError, lane) = float_above(t.z_error * (1 + 0x1p-20));
-      field(FrameLeaf::kId, lane) = std::bit_cast<float>(ids_[lane]);
+      field(FrameLeaf::kId, lane) = FrameLeaf::stored(ids_[lane]);
       most_error = std::max(most_error, t.z_error);
     }
     const double lo = leaf.lo.z, hi = leaf.hi.z, middle = 0.5 * (lo + hi);
@@ -87,9 +90,14 @@ class FrameWriter {
   void write_node(size_t index) {
     const WideItem& item = plan_.items()[index];
     auto* node = new (tree_.memory.data() + item.offset) FrameNode{};
+    std::array<size_t, kWidth> children{};
+    for (size_t i = 0; i < item.children; ++i) children[i] = item.first_child + i;
+    const auto depth = [&](size_t child) { return plan_.bounds(plan_.items()[child]).lo.z; };
+    std::stable_sort(children.begin(), children.begin() + item.children,
+                     [&](size_t a, size_t b) { return depth(a) > depth(b); });
     for (size_t lane = 0; lane < kWidth; ++lane) {
       const bool is_there = lane < item.children;
-      const size_t child = is_there ? item.first_child + lane : 0;
+      const size_t child = children[lane];
       for (int axis = 0; axis < 3; ++axis) {
         node->lower[axis][lane] = is_there ? plan_.bounds(plan_.items()[child]).lo[axis] : kInf;
         node->upper[axis][lane] = is_there ? plan_.bounds(plan_.items()[child]).hi[axis] : -kInf;
@@ -107,16 +115,16 @@ class FrameWriter {
 
 }  // namespace
 
-FrameMemory write_frame_tree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleMesh> mesh,
+FrameMemory write_frame_tree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleCorners> corners,
                              const WideOptions& options) {
   validate(options);
   FrameMemory result;
   result.frame = frame;
-  result.mesh = std::move(mesh);
+  result.corners = std::move(corners);
   if (tree.nodes.empty()) return result;
-  const TriangleMesh& triangles = *result.mesh;
+  const TriangleCorners& triangles = *result.corners;
   const WideForm form{sizeof(FrameNode), FrameLeaf::size,
-                      [&](uint32_t triangle) { return bounds_of(frame, triangles, triangle); }};
+                      [&](uint32_t triangle) { return bounds_of(frame, triangles.at_id(triangle)); }};
   const WidePlan plan(tree, options, form);
   set_sizes(result, plan.root_bounds());
   FrameWriter(plan, result).run();

@@ -122,8 +122,8 @@ void WidePlan::plan() {
       roots.push_back(root);  // the whole tree is one leaf: the only child of the root node
     else
       collect_halves(root, kWidth, roots);
-    // The most probable first, for any hit.
-    std::ranges::stable_sort(roots, std::greater<>(), [&](uint32_t i) { return measures_[i]; });
+    // The most probable last: any hit takes the last first.
+    std::ranges::stable_sort(roots, {}, [&](uint32_t i) { return measures_[i]; });
     plan_children(index, roots, pending);
   }
   if (node_bytes_ + leaf_bytes_ > uint64_t{1} << 43)

@@ -65,7 +65,7 @@ struct Tally {
 };
 
 /// The same tree for every instruction set.
-std::vector<FrameTree> on_every_isa(const RayFrame& frame, const std::shared_ptr<const TriangleMesh>& mesh,
+std::vector<FrameTree> on_every_isa(const RayFrame& frame, const std::shared_ptr<const TriangleCorners>& mesh,
                                     std::span<const uint32_t> triangles, bool spatial) {
   std::vector<FrameTree> trees;
   for (const Isa isa : supported_isas()) {
@@ -149,6 +149,7 @@ TEST(FrameTree, ParallelRaysEqualBruteForce) {
   const size_t per_frame = std::max<size_t>(1, wanted_rays() / (families.size() * 8 * isas.size()));
   for (size_t f = 0; f < families.size(); ++f) {
     const auto mesh = std::make_shared<const TriangleMesh>(families[f].mesh);
+    const auto corners = std::make_shared<const TriangleCorners>(*mesh);
     const std::vector<uint32_t> ids = all_triangles(*mesh);
     Random random(f + 1);
     const Bounds box = mesh_bounds(*mesh);
@@ -160,7 +161,7 @@ TEST(FrameTree, ParallelRaysEqualBruteForce) {
       for (const FrameKind kind : {FrameKind::kRotation, FrameKind::kShearX, FrameKind::kShearY, FrameKind::kShearZ}) {
         const auto frame = parallel_frame(kind, direction, middle);
         if (!frame) continue;
-        const auto trees = on_every_isa(*frame, mesh, ids, random.below(2) != 0);
+        const auto trees = on_every_isa(*frame, corners, ids, random.below(2) != 0);
         if (trees.empty()) continue;
         const std::vector<Ray> rays = rays_along(*mesh, direction, per_frame, random.next());
         const Tally tally = in_parallel(rays.size(), [&](size_t i, Tally& one) {
@@ -185,13 +186,14 @@ TEST(FrameTree, RaysOfAreasEqualBruteForce) {
   const size_t per_family = std::max<size_t>(14, wanted_rays() / (families.size() * isas.size()));
   for (size_t f = 0; f < families.size(); ++f) {
     const auto mesh = std::make_shared<const TriangleMesh>(families[f].mesh);
+    const auto corners = std::make_shared<const TriangleCorners>(*mesh);
     const std::vector<uint32_t> ids = all_triangles(*mesh);
     for (const InfluenceArea& area : test::areas_around(*mesh, f + 5)) {
       const AreaGeometry geometry(area);
       std::vector<Ray> rays = test::rays_of_areas(*mesh, {area}, per_family / 7, f);
       std::erase_if(rays, [&](const Ray& ray) { return !(ray.tmin >= 0 && contains(geometry.region(), ray.origin)); });
       for (const FrameKind kind : frame_kinds(geometry)) {
-        const auto trees = on_every_isa(*area_frame(kind, geometry), mesh, ids, f % 2 == 0);
+        const auto trees = on_every_isa(*area_frame(kind, geometry), corners, ids, f % 2 == 0);
         if (trees.empty()) continue;
         const Tally tally = in_parallel(rays.size(), [&](size_t i, Tally& one) {
           const Hit expected = intersect_reference(*mesh, rays[i]);
@@ -214,15 +216,16 @@ TEST(FrameTree, RaysOfAreasEqualBruteForce) {
 
 TEST(FrameTree, EmptyTreesAndInvalidRays) {
   const auto mesh = std::make_shared<const TriangleMesh>(test::mesh_families(1).front().mesh);
+  const auto corners = std::make_shared<const TriangleCorners>(*mesh);
   const RayFrame frame = *parallel_frame(FrameKind::kShearY, {0, -1, 0.25f}, {});
   const Hit known{3, 0.25f, 0.5f, 7};
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  for (const FrameTree& tree : {FrameTree(), *build_frame_tree(frame, mesh, {})}) {
+  for (const FrameTree& tree : {FrameTree(), *build_frame_tree(frame, corners, {})}) {
     EXPECT_EQ(tree.intersect({{0, 0, 0}, {0, -1, 0.25f}}, known), known);
     EXPECT_EQ(tree.occluded({{0, 0, 0}, {0, -1, 0.25f}}), false);
     EXPECT_EQ(tree.memory_bytes(), 0u);
   }
-  const FrameTree tree = *build_frame_tree(frame, mesh, all_triangles(*mesh));
+  const FrameTree tree = *build_frame_tree(frame, corners, all_triangles(*mesh));
   for (const Ray& ray : {Ray{{nan, 0, 0}, {0, -1, 0}}, Ray{{0, 0, 0}, {0, 0, 0}}, Ray{{0, 0, 0}, {0, -1, 0}, 2, 1},
                          Ray{{0, 0, 0}, {0, -1, 0}, nan, 1}, Ray{{0, kInf, 0}, {0, -1, 0}}}) {
     EXPECT_EQ(tree.intersect(ray, known), known);

@@ -14,64 +14,36 @@ HWY_BEFORE_NAMESPACE();
 namespace raygrain::HWY_NAMESPACE {
 namespace {
 
-/// Depths count from where the ray comes from: z - z_lo, or z_hi - z where t falls with z. Subtraction is monotone, so
-/// comparisons of distances are safe.
-template <bool kAscending>
-struct Along {
-  float start;
-
-  HWY_INLINE explicit Along(const FrameQuery& query)
-      : start(kAscending ? query.column.box.lo.z : query.column.box.hi.z) {}
-  HWY_INLINE float distance(float z) const { return kAscending ? z - start : start - z; }
-  /// Of the nearer end of [lo, hi].
-  HWY_INLINE Eight distance(const Eight& lo, const Eight& hi) const {
-    return kAscending ? lo - broadcast(start) : broadcast(start) - hi;
-  }
-};
+using BoxMask = hn::Mask<Tag>;
+using RefTag = hn::RebindToUnsigned<Tag>;
 
 /// A column against eight boxes: six compares.
 struct ColumnBoxes {
-  Eight x_lo, x_hi, y_lo, y_hi, z_lo, z_hi;
+  Eight x_lo, x_hi, y_lo, y_hi;
 
   HWY_INLINE explicit ColumnBoxes(const FrameQuery& query)
       : x_lo(broadcast(query.column.box.lo.x)),
         x_hi(broadcast(query.column.box.hi.x)),
         y_lo(broadcast(query.column.box.lo.y)),
-        y_hi(broadcast(query.column.box.hi.y)),
-        z_lo(broadcast(query.column.box.lo.z)),
-        z_hi(broadcast(query.column.box.hi.z)) {}
+        y_hi(broadcast(query.column.box.hi.y)) {}
 
-  HWY_INLINE uint32_t meets(const FrameNode& node, const Eight& first, const Eight& last) const {
-    uint32_t bits = 0;
-    for (size_t i = 0; i < kParts; ++i) {
-      const Tag tag;
-      const size_t at = i * kLanes;
-      const auto x = hn::And(hn::Le(hn::Load(tag, node.lower[0] + at), x_hi.part[i]),
-                             hn::Le(x_lo.part[i], hn::Load(tag, node.upper[0] + at)));
-      const auto y = hn::And(hn::Le(hn::Load(tag, node.lower[1] + at), y_hi.part[i]),
-                             hn::Le(y_lo.part[i], hn::Load(tag, node.upper[1] + at)));
-      const auto z = hn::And(hn::Le(hn::Load(tag, node.lower[2] + at), last.part[i]),
-                             hn::Le(first.part[i], hn::Load(tag, node.upper[2] + at)));
-      uint8_t part[8] = {};
-      hn::StoreMaskBits(tag, hn::And(hn::And(x, y), z), part);
-      bits |= static_cast<uint32_t>(part[0]) << at;
-    }
-    return bits;
-  }
-  HWY_INLINE uint32_t operator()(const FrameNode& node) const { return meets(node, z_lo, z_hi); }
-  /// With the bound of the depth, and the distance at which the column enters.
-  template <bool kAscending>
-  HWY_INLINE uint32_t operator()(const FrameNode& node, float bound, const Along<kAscending>& along,
-                                 float* entry) const {
-    const Eight lower = load(node.lower[2]), upper = load(node.upper[2]);
-    store(max(along.distance(lower, upper), broadcast(0.0f)), entry);
-    return kAscending ? meets(node, z_lo, broadcast(bound)) : meets(node, broadcast(bound), z_hi);
+  /// Does the column between two depths meet the boxes of one part of a node?
+  HWY_INLINE BoxMask operator()(const FrameNode& node, size_t part, const Eight& first, const Eight& last) const {
+    const Tag tag;
+    const size_t at = part * kLanes;
+    const auto x = hn::And(hn::Le(hn::Load(tag, node.lower[0] + at), x_hi.part[part]),
+                           hn::Le(x_lo.part[part], hn::Load(tag, node.upper[0] + at)));
+    const auto y = hn::And(hn::Le(hn::Load(tag, node.lower[1] + at), y_hi.part[part]),
+                           hn::Le(y_lo.part[part], hn::Load(tag, node.upper[1] + at)));
+    const auto z = hn::And(hn::Le(hn::Load(tag, node.lower[2] + at), last.part[part]),
+                           hn::Le(first.part[part], hn::Load(tag, node.upper[2] + at)));
+    return hn::And(hn::And(x, y), z);
   }
 };
 
 /// A cone against eight boxes: slabs in x and y, with z for the parameter.
 struct ConeBoxes {
-  Eight inverse_x, inverse_y, near_x, far_x, near_y, far_y, z_lo, z_hi;
+  Eight inverse_x, inverse_y, near_x, far_x, near_y, far_y;
   size_t near_side_x, near_side_y;  // in floats from the start of a node
 
   HWY_INLINE explicit ConeBoxes(const FrameQuery& query)
@@ -81,34 +53,20 @@ struct ConeBoxes {
         far_x(broadcast(query.far_x)),
         near_y(broadcast(query.near_y)),
         far_y(broadcast(query.far_y)),
-        z_lo(broadcast(query.column.box.lo.z)),
-        z_hi(broadcast(query.column.box.hi.z)),
         near_side_x(query.inverse_x < 0 ? 3 * kWidth : 0),
         near_side_y(query.inverse_y < 0 ? 4 * kWidth : kWidth) {}
 
-  HWY_INLINE uint32_t meets(const FrameNode& node, const Eight& first, const Eight& last, Eight& enter,
-                            Eight& leave) const {
-    const float* sides = &node.lower[0][0];
-    const Eight enter_x = multiply_add(load(sides + near_side_x), inverse_x, near_x);
-    const Eight enter_y = multiply_add(load(sides + near_side_y), inverse_y, near_y);
-    const Eight leave_x = multiply_add(load(sides + (3 * kWidth - near_side_x)), inverse_x, far_x);
-    const Eight leave_y = multiply_add(load(sides + (5 * kWidth - near_side_y)), inverse_y, far_y);
-    enter = max(max(enter_x, enter_y), max(load(node.lower[2]), first));
-    leave = min(min(leave_x, leave_y), min(load(node.upper[2]), last));
-    return less_equal(enter, leave);
-  }
-  HWY_INLINE uint32_t operator()(const FrameNode& node) const {
-    Eight enter, leave;
-    return meets(node, z_lo, z_hi, enter, leave);
-  }
-  template <bool kAscending>
-  HWY_INLINE uint32_t operator()(const FrameNode& node, float bound, const Along<kAscending>& along,
-                                 float* entry) const {
-    Eight enter, leave;
-    const uint32_t bits = kAscending ? meets(node, z_lo, broadcast(bound), enter, leave)
-                                     : meets(node, broadcast(bound), z_hi, enter, leave);
-    store(along.distance(enter, leave), entry);
-    return bits;
+  HWY_INLINE BoxMask operator()(const FrameNode& node, size_t part, const Eight& first, const Eight& last) const {
+    const Tag tag;
+    const float* sides = &node.lower[0][0] + part * kLanes;
+    const auto side = [&](size_t offset) { return hn::Load(tag, sides + offset); };
+    const auto enter_x = hn::MulAdd(side(near_side_x), inverse_x.part[part], near_x.part[part]);
+    const auto enter_y = hn::MulAdd(side(near_side_y), inverse_y.part[part], near_y.part[part]);
+    const auto leave_x = hn::MulAdd(side(3 * kWidth - near_side_x), inverse_x.part[part], far_x.part[part]);
+    const auto leave_y = hn::MulAdd(side(5 * kWidth - near_side_y), inverse_y.part[part], far_y.part[part]);
+    const auto enter = hn::Max(hn::Max(enter_x, enter_y), hn::Max(side(2 * kWidth), first.part[part]));
+    const auto leave = hn::Min(hn::Min(leave_x, leave_y), hn::Min(side(5 * kWidth), last.part[part]));
+    return hn::Le(enter, leave);
   }
 };
 

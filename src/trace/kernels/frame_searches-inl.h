@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 #include <hwy/cache_control.h>
 
@@ -31,10 +32,17 @@ HWY_INLINE void fetch(const FrameMemory& tree, FrameRef child) {
   for (size_t i = 0; i < 4; ++i) hwy::Prefetch(lines + i * kCacheLine);
 }
 
-HWY_INLINE bool confirm(const TriangleMesh& mesh, uint32_t id, const Ray& ray, Hit& hit) {
-  if (!intersect_triangle(ray, mesh.vertex(id, 0), mesh.vertex(id, 1), mesh.vertex(id, 2), hit)) return false;
+HWY_INLINE bool confirm(const FrameMemory& tree, uint32_t id, const Ray& ray, Hit& hit) {
+  const std::array<Vec3, 3>& corners = tree.corners->at_id(id);
+  if (!intersect_triangle(ray, corners[0], corners[1], corners[2], hit)) return false;
   hit.triangle = id;
   return true;
+}
+
+HWY_INLINE void fetch_corners(const FrameMemory& tree, uint32_t id) {
+  const auto* first = reinterpret_cast<const std::byte*>(&tree.corners->at_id(id));
+  hwy::Prefetch(first);
+  hwy::Prefetch(first + sizeof(std::array<Vec3, 3>) - 1);
 }
 
 template <bool kCounting>
@@ -52,69 +60,43 @@ HWY_INLINE void count_leaf(FrameRef leaf, TraceCounters* counters) {
   }
 }
 
-struct FrameEntry {
-  FrameRef child;
-  float distance;
-};
-
-/// A child in the order of its distance, which is not below zero: the distance's bits above the child's place.
-using FrameKey = uint64_t;
-
-HWY_INLINE void order(FrameKey& a, FrameKey& b) {
-  const FrameKey least = std::min(a, b);
-  b = std::max(a, b);
-  a = least;
-}
-
-/// Nodes and leaves that are met but not visited yet, the next one on top.
+/// Nodes and leaves that are met but not visited yet, the next one on top. Children lie in a node in the order of their
+/// depths, so they need no sorting.
 struct FrameStack {
   size_t size = 0;
-  FrameEntry entries[kWideStackSize];  // NOLINT: filled as far as `size` says
+  alignas(32) FrameRef refs[kFrameStackSize];  // NOLINT: filled as far as `size` says
 
-  HWY_INLINE void push(const FrameMemory& tree, const FrameNode& node, FrameKey key) {
-    RAYGRAIN_CHECK_LT(size, kWideStackSize);
-    const FrameRef child = node.child[key & (kWidth - 1)];
-    fetch(tree, child);
-    entries[size].child = child;
-    entries[size].distance = std::bit_cast<float>(static_cast<uint32_t>(key >> 32));
-    ++size;
+  template <class Mask>
+  HWY_INLINE void push(const FrameNode& node, size_t part, Mask mask) {
+    RAYGRAIN_CHECK_LT(size, kFrameStackSize - kWidth);
+    const RefTag tag;
+    const auto children = hn::Load(tag, node.child + part * kLanes);
+    const auto bits = hn::RebindMask(tag, mask);
+    hn::StoreU(hn::Compress(children, bits), tag, refs + size);
+    size += hn::CountTrue(tag, bits);
   }
 };
 
-/// The nearest of the children in `bits`; the others go on the stack, far ones below.
-HWY_INLINE FrameRef nearest_child(const FrameMemory& tree, const FrameNode& node, const float* distance, uint32_t bits,
-                                  FrameStack& stack) {
-  const auto take = [&] {
-    const size_t lane = take_lane(bits);
-    return static_cast<FrameKey>(std::bit_cast<uint32_t>(distance[lane])) << 32 | lane;
-  };
-  FrameKey a = take();
-  if (bits == 0) return node.child[a & (kWidth - 1)];
-  FrameKey b = take();
-  order(a, b);
-  if (bits == 0) {
-    stack.push(tree, node, b);
-    return node.child[a & (kWidth - 1)];
+/// The same with the depth at which each is entered.
+struct OrderedStack : FrameStack {
+  alignas(32) float depths[kFrameStackSize];  // NOLINT
+
+  template <bool kAscending, class Mask>
+  HWY_INLINE void push(const FrameNode& node, size_t part, Mask mask) {
+    const Tag tag;
+    const float* sides = (kAscending ? node.lower[2] : node.upper[2]) + part * kLanes;
+    hn::StoreU(hn::Compress(hn::Load(tag, sides), mask), tag, depths + size);
+    FrameStack::push(node, part, mask);
   }
-  FrameKey c = take();
-  order(b, c);
-  order(a, b);
-  if (bits == 0) {
-    stack.push(tree, node, c);
-    stack.push(tree, node, b);
-    return node.child[a & (kWidth - 1)];
+  /// Rays that run against the order of the node.
+  HWY_INLINE void reverse(size_t from) {
+    for (size_t a = from, b = size; a + 1 < b; ++a) {
+      --b;
+      std::swap(refs[a], refs[b]);
+      std::swap(depths[a], depths[b]);
+    }
   }
-  FrameKey keys[kWidth] = {a, b, c};
-  size_t count = 3;
-  while (bits != 0) {
-    const FrameKey key = take();
-    size_t i = count++;
-    for (; i > 0 && keys[i - 1] > key; --i) keys[i] = keys[i - 1];
-    keys[i] = key;
-  }
-  while (--count > 0) stack.push(tree, node, keys[count]);
-  return node.child[keys[0] & (kWidth - 1)];
-}
+};
 
 /// Triangles that may be the nearest, until intersect_triangle has the last word; and the depth beyond which no hit
 /// matters.
@@ -123,22 +105,18 @@ class FramePending {
  public:
   HWY_INLINE FramePending(const FrameMemory& tree, const FrameQuery& query, const Ray& ray, const Hit& known,
                           TraceCounters* counters)
-      : mesh_(*tree.mesh),
+      : tree_(tree),
         query_(query),
         ray_(ray),
-        along_(query),
         best_(known),
         counters_(counters),
-        bound_(kAscending ? query.column.box.hi.z : query.column.box.lo.z),
-        distance_(along_.distance(bound_)) {}
+        bound_(kAscending ? query.column.box.hi.z : query.column.box.lo.z) {}
 
   HWY_INLINE float bound() const { return bound_; }
-  HWY_INLINE float distance() const { return distance_; }
-  HWY_INLINE const Along<kAscending>& along() const { return along_; }
 
   HWY_INLINE void add(uint32_t id, float first, float last, bool sure) {
     if (size_ == kCapacity) decide();
-    hwy::Prefetch(&mesh_.triangles[id]);
+    fetch_corners(tree_, id);
     entries_[size_++] = {id, first, last};
     if (sure) lower(first, last);
   }
@@ -149,7 +127,7 @@ class FramePending {
       if (kPruning && is_beyond(next.first, next.last)) continue;
       if constexpr (kCounting) ++counters_->triangle_tests;
       Hit hit;
-      if (!confirm(mesh_, next.id, ray_, hit) || !is_nearer(hit, best_)) continue;
+      if (!confirm(tree_, next.id, ray_, hit) || !is_nearer(hit, best_)) continue;
       best_ = hit;
       lower(next.first, next.last);
     }
@@ -168,16 +146,14 @@ class FramePending {
     if (!kPruning) return;
     const float bound = query_.bound_after(first, last);
     bound_ = kAscending ? std::min(bound_, bound) : std::max(bound_, bound);
-    distance_ = along_.distance(bound_);
   }
 
-  const TriangleMesh& mesh_;
+  const FrameMemory& tree_;
   const FrameQuery& query_;
   const Ray& ray_;
-  Along<kAscending> along_;
   Hit best_;
   TraceCounters* counters_;
-  float bound_, distance_;
+  float bound_;
   size_t size_ = 0;
   Candidate entries_[kCapacity];  // NOLINT: filled as far as size_ says
 };
@@ -187,33 +163,33 @@ Hit nearest_in_frame(const FrameMemory& tree, const FrameQuery& query, const Ray
                      TraceCounters* counters) {
   const Boxes boxes(query);
   const Triangles triangles(tree, query);
+  const float start = kAscending ? query.column.box.lo.z : query.column.box.hi.z;
   FramePending<kCounting, kAscending, kPruning> pending(tree, query, ray, known, counters);
-  FrameStack stack;
+  OrderedStack stack;
   FrameRef current = frame_ref(0, 0);
   while (true) {
+    const float bound = pending.bound(), lo = kAscending ? start : bound, hi = kAscending ? bound : start;
     if (triangles_of(current) == 0) {
       const FrameNode& node = tree.node(current);
       count_node<kCounting>(node, counters);
-      alignas(32) float distance[kWidth];
-      const uint32_t bits = boxes(node, pending.bound(), pending.along(), distance);
-      if (bits != 0) {
-        current = nearest_child(tree, node, distance, bits, stack);
-        continue;
-      }
+      const Eight first = broadcast(lo), last = broadcast(hi);
+      const size_t size = stack.size;
+      for (size_t part = 0; part < kParts; ++part)
+        stack.template push<kAscending>(node, part, boxes(node, part, first, last));
+      if (!kAscending) stack.reverse(size);
     } else {
       const FrameLeaf leaf = tree.leaf(current);
       count_leaf<kCounting>(current, counters);
       FrameCandidates found;
-      uint32_t bits = triangles(leaf, kAscending ? query.column.box.lo.z : pending.bound(),
-                                kAscending ? pending.bound() : query.column.box.hi.z, found);
+      uint32_t bits = triangles(leaf, lo, hi, found);
       if (bits != 0) {
-        alignas(32) float first[kWidth], last[kWidth];
-        store(found.first, first);
-        store(found.last, last);
+        alignas(32) float nearest[kWidth], farthest[kWidth];
+        store(found.first, nearest);
+        store(found.last, farthest);
         do {
           const size_t lane = take_lane(bits);
-          if (kPruning && pending.is_beyond(first[lane], last[lane])) continue;
-          pending.add(leaf.id(lane), first[lane], last[lane], (found.sure >> lane & 1) != 0);
+          if (kPruning && pending.is_beyond(nearest[lane], farthest[lane])) continue;
+          pending.add(leaf.id(lane), nearest[lane], farthest[lane], (found.sure >> lane & 1) != 0);
         } while (bits != 0);
       }
     }
@@ -223,8 +199,9 @@ Hit nearest_in_frame(const FrameMemory& tree, const FrameQuery& query, const Ray
         return pending.best();
       }
       --stack.size;
-    } while (stack.entries[stack.size].distance > pending.distance());
-    current = stack.entries[stack.size].child;
+    } while (pending.is_beyond(stack.depths[stack.size], stack.depths[stack.size]));
+    current = stack.refs[stack.size];
+    if (stack.size != 0) fetch(tree, stack.refs[stack.size - 1]);
   }
 }
 
@@ -233,26 +210,15 @@ bool any_in_frame(const FrameMemory& tree, const FrameQuery& query, const Ray& r
   const Boxes boxes(query);
   const Triangles triangles(tree, query);
   const float lo = query.column.box.lo.z, hi = query.column.box.hi.z;
+  const Eight first = broadcast(lo), last = broadcast(hi);
   bool hit_something = false;
-  size_t size = 0;
-  FrameRef stack[kWideStackSize];  // NOLINT: filled as far as `size` says
+  FrameStack stack;
   FrameRef current = frame_ref(0, 0);
   while (true) {
     if (triangles_of(current) == 0) {
       const FrameNode& node = tree.node(current);
       count_node<kCounting>(node, counters);
-      uint32_t bits = boxes(node);
-      if (bits != 0) {
-        current = node.child[take_lane(bits)];
-        while (bits != 0) {
-          const auto lane = static_cast<size_t>(31 - std::countl_zero(bits));
-          bits ^= 1u << lane;
-          fetch(tree, node.child[lane]);
-          RAYGRAIN_CHECK_LT(size, kWideStackSize);
-          stack[size++] = node.child[lane];
-        }
-        continue;
-      }
+      for (size_t part = 0; part < kParts; ++part) stack.push(node, part, boxes(node, part, first, last));
     } else {
       const FrameLeaf leaf = tree.leaf(current);
       count_leaf<kCounting>(current, counters);
@@ -266,13 +232,14 @@ bool any_in_frame(const FrameMemory& tree, const FrameQuery& query, const Ray& r
         const size_t lane = take_lane(bits);
         if constexpr (kCounting) ++counters->triangle_tests;
         Hit hit;
-        if (!confirm(*tree.mesh, leaf.id(lane), ray, hit)) continue;
+        if (!confirm(tree, leaf.id(lane), ray, hit)) continue;
         if (kPruning) return true;
         hit_something = true;
       }
     }
-    if (size == 0) return hit_something;
-    current = stack[--size];
+    if (stack.size == 0) return hit_something;
+    current = stack.refs[--stack.size];
+    if (stack.size != 0) fetch(tree, stack.refs[stack.size - 1]);
   }
 }
 
