@@ -100,6 +100,35 @@ HWY_INLINE void place(const CoverageGrid& grid, ColumnRays::Kind kind, size_t co
   }
 }
 
+/// The first grid whose window holds each of up to kBlock points of a block.
+HWY_INLINE void choose_grids(const EyeGrids& eye, bool are_directions, size_t count, const Block& block,
+                             uint8_t* chosen) {
+  const FloatTag d;
+  const Vec3 center = are_directions ? Vec3{} : eye.grids[0]->map.center;
+  for (size_t i = 0; i < count; i += hn::Lanes(d)) {
+    Floats px, py, pz;
+    hn::LoadInterleaved3(d, &block.points[i].x, px, py, pz);
+    px = hn::Sub(px, hn::Set(d, center.x));
+    py = hn::Sub(py, hn::Set(d, center.y));
+    pz = hn::Sub(pz, hn::Set(d, center.z));
+    Floats best = hn::Set(d, static_cast<float>(kNoGrid));
+    for (uint32_t g = eye.count; g-- > 0;) {
+      const CoverageGrid& grid = *eye.grids[g];
+      const Floats x = turn(grid, 0, px, py, pz), y = turn(grid, 1, px, py, pz), z = turn(grid, 2, px, py, pz);
+      const auto in_x =
+          hn::And(hn::Ge(x, hn::Mul(hn::Set(d, grid.x_lo), z)), hn::Le(x, hn::Mul(hn::Set(d, grid.x_hi), z)));
+      const auto in_y =
+          hn::And(hn::Ge(y, hn::Mul(hn::Set(d, grid.y_lo), z)), hn::Le(y, hn::Mul(hn::Set(d, grid.y_hi), z)));
+      const auto inside = hn::And(hn::And(in_x, in_y), hn::Gt(z, hn::Zero(d)));
+      best = hn::IfThenElse(inside, hn::Set(d, static_cast<float>(g)), best);
+    }
+    alignas(64) float numbers[hn::MaxLanes(FloatTag())];
+    hn::Store(best, d, numbers);
+    for (size_t lane = 0; lane < std::min(hn::Lanes(d), count - i); ++lane)
+      chosen[i + lane] = static_cast<uint8_t>(numbers[lane]);
+  }
+}
+
 HWY_INLINE uint32_t cell_at(const CoverageTile& tile, float x, float y) {
   const int32_t across = 1 << tile.levels;
   const auto size = static_cast<float>(across);
@@ -146,10 +175,11 @@ struct Four {
 };
 
 /// A column in registers.
-struct Column {
+struct ColumnLanes {
   hn::Vec<FourTag> x, y;
 
-  HWY_INLINE Column(float x_value, float y_value) : x(hn::Set(FourTag(), x_value)), y(hn::Set(FourTag(), y_value)) {}
+  HWY_INLINE ColumnLanes(float x_value, float y_value)
+      : x(hn::Set(FourTag(), x_value)), y(hn::Set(FourTag(), y_value)) {}
 
   /// a x + b y + c.
   HWY_INLINE Four at(const CoverageTriangle& triangle) const {

@@ -42,7 +42,7 @@ template <class Asks>
 HWY_INLINE bool meets_any(const CoverageGrid& grid, const Waiting& w, const Asks& asks, uint64_t& tests) {
   const CoverageReference* reference = grid.references.data() + w.first;
   const CoverageTriangle* triangles = grid.triangles.data();
-  const Column column(w.x, w.y);
+  const ColumnLanes column(w.x, w.y);
   const auto depth = hn::Set(FourTag(), w.s);
   const uint32_t count = w.count, code = w.code;
   for (uint32_t i = 0; i < count; ++i) {
@@ -109,7 +109,7 @@ HWY_INLINE uint32_t first_hits(const CoverageGrid& grid, float x, float y, const
   const CoverageReference* reference = grid.references.data() + list.first;
   const CoverageTriangle* triangles = grid.triangles.data();
   const CoverageTile& tile = grid.tiles[list.tile];
-  const Column column(x, y);
+  const ColumnLanes column(x, y);
   Candidate candidates[kMostCandidates];  // NOLINT: filled as far as size says
   size_t size = 0;
   float sure = -kInf;  // the first hit is not below this depth

@@ -32,6 +32,15 @@ void nearest(const CoverageGrid& grid, const ColumnBatch& batch, Hit* hits, std:
   counters.add(counts);
 }
 
+void choose(const EyeGrids& eye, bool are_directions, const Vec3* points, size_t count, uint8_t* chosen) {
+  Block block;  // NOLINT: filled as far as it is read
+  for (size_t begin = 0; begin < count; begin += kBlock) {
+    const size_t size = std::min(kBlock, count - begin);
+    std::copy(points + begin, points + begin + size, block.points);
+    choose_grids(eye, are_directions, size, block, chosen + begin);
+  }
+}
+
 std::optional<bool> any_of_one(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray) {
   return single_any(grid, column, ray);
 }
@@ -43,7 +52,7 @@ std::optional<Hit> nearest_of_one(const CoverageGrid& grid, const SingleColumn& 
 }  // namespace
 
 extern const CoverageKernels kCoverageTable;
-const CoverageKernels kCoverageTable{any_of_one, nearest_of_one, any, nearest};
+const CoverageKernels kCoverageTable{choose, any_of_one, nearest_of_one, any, nearest};
 
 }  // namespace raygrain::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
