@@ -10,7 +10,7 @@ CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_
 
 BENCH ?= --quick
 
-.PHONY: help build demo bench bench-dependencies test test-full asan-test release-test tsan-test clang-test coverage format check-format tidy \
+.PHONY: help build demo bench bench-dependencies report-page report-page-test report-page-dependencies test test-full asan-test release-test tsan-test clang-test coverage format check-format tidy \
         dependencies full-dependencies install clean
 
 help:            ## this list
@@ -38,6 +38,26 @@ bench: bench-dependencies ## against Embree on the same rays; BENCH="--json FILE
 demo: build      ## build, then compare the paper's heuristics on a built-in city under a low sun
 	@scripts/demo.sh $(RELEASE)/bin/raygrain build/demo
 
+report-page-dependencies:
+	@scripts/install-dependencies.sh report-page
+
+PAGE := report-page
+TEMPLATE := $(RELEASE)/share/raygrain/report-page.html
+
+report-page: $(TEMPLATE) ## the interactive page of `raygrain report`; needs the npm registry, nothing else does
+$(TEMPLATE): $(PAGE)/node_modules $(wildcard $(PAGE)/*.html $(PAGE)/*.ts $(PAGE)/src/*)
+	@cd $(PAGE) && npm run --silent build
+	@mkdir -p $(@D) && cp $(PAGE)/dist/index.html $@
+	@echo "raygrain report now fills $@"
+
+$(PAGE)/node_modules: $(PAGE)/package-lock.json
+	@$(MAKE) --no-print-directory report-page-dependencies
+	@cd $(PAGE) && npm ci --silent && touch node_modules
+
+report-page-test: build report-page ## the report in headless Chromium: every chart, hover, dark, print, phone; pictures in build/report-page-test
+	@scripts/install-dependencies.sh browser
+	@cd $(PAGE) && npm test --silent -- ../$(RELEASE)/bin/raygrain ../build/report-page-test
+
 test: dependencies ## everything a commit must pass: sanitizers on the core, then all tests in release
 	@$(MAKE) --no-print-directory asan-test
 	@$(MAKE) --no-print-directory release-test
@@ -62,6 +82,7 @@ test-full: full-dependencies ## all of it: ThreadSanitizer, Clang, coverage, cla
 	@$(call PRESET,release)
 	@cmake --build $(RELEASE) -j $(JOBS)
 	@cd $(RELEASE) && RAYGRAIN_TEST_SCALE=full $(CTEST)
+	@$(MAKE) --no-print-directory report-page-test
 
 tsan-test:
 	@$(call PRESET,tsan)

@@ -1,8 +1,7 @@
 // The aligned table, geometric means, and JSON.
 #include <cmath>
-#include <fstream>
-#include <functional>
 #include <map>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -15,18 +14,37 @@
 namespace raygrain::bench {
 namespace {
 
-double ratio(double ours, double theirs) {
-  return theirs > 0 ? ours / theirs : 0;
+using Json = nlohmann::ordered_json;
+
+/// Above 1: raygrain is faster. Nothing where the peer was not measured.
+std::optional<double> ratio(double ours, double theirs) {
+  return theirs > 0 && std::isfinite(theirs) ? std::optional(ours / theirs) : std::nullopt;
+}
+std::optional<double> ratio_single(const Row& row) {
+  return ratio(row.raygrain_mrays, row.embree_single_mrays);
+}
+std::optional<double> ratio_best(const Row& row) {
+  return ratio(row.raygrain_mrays, row.embree_best_mrays);
+}
+std::optional<double> ratio_of(const BuildRow& row) {
+  return row.embree_bytes > 0 ? ratio(row.embree_seconds, row.raygrain_seconds) : std::nullopt;
+}
+
+std::string text(const std::optional<double>& x) {
+  return x ? fmt::format("{:.3f}", *x) : "-";
+}
+Json to_json(const std::optional<double>& x) {
+  return x ? Json(*x) : Json();
 }
 
 class GeometricMean {
  public:
-  void add(double x) {
-    if (!(x > 0)) return;
-    sum_ += std::log(x);
+  void add(const std::optional<double>& x) {
+    if (!x || !(*x > 0)) return;
+    sum_ += std::log(*x);
     ++count_;
   }
-  double value() const { return count_ > 0 ? std::exp(sum_ / count_) : 0; }
+  std::optional<double> value() const { return count_ > 0 ? std::optional(std::exp(sum_ / count_)) : std::nullopt; }
 
  private:
   double sum_ = 0;
@@ -37,52 +55,148 @@ struct Means {
   GeometricMean single, best;
 };
 
-/// By suite, threads and api.
-std::map<std::string, Means> means(const Results& results) {
+/// Keys: SUITE_API_N_threads, and the same by query.
+std::map<std::string, Means> means_of_rows(const Results& results) {
+  std::map<std::string, Means> all;
+  for (const Row& row : results.rows)
+    for (const std::string& query : {std::string(), row.query + "_"}) {
+      Means& m = all[fmt::format("{}_{}_{}{}_threads", row.suite, row.api, query, row.threads)];
+      m.single.add(ratio_single(row));
+      m.best.add(ratio_best(row));
+    }
+  return all;
+}
+
+std::map<std::string, GeometricMean> means_of_builds(const Results& results) {
+  std::map<std::string, GeometricMean> all;
+  for (const BuildRow& row : results.builds)
+    all[fmt::format("build_{}_{}_threads", row.preset, row.threads)].add(ratio_of(row));
+  return all;
+}
+
+/// How much faster many threads are than one: of raygrain and of the peer's single rays. Keys: SUITE_API_N_threads.
+std::map<std::string, Means> scaling(const Results& results) {
+  std::map<std::string, const Row*> on_one;
   std::map<std::string, Means> all;
   for (const Row& row : results.rows) {
+    const std::string key = row.suite + '/' + row.scene + '/' + row.rays + '/' + row.query + '/' + row.api;
+    if (row.threads == 1) on_one[key] = &row;
+    const auto one = on_one.find(key);
+    if (row.threads == 1 || one == on_one.end()) continue;
     Means& m = all[fmt::format("{}_{}_{}_threads", row.suite, row.api, row.threads)];
-    m.single.add(ratio(row.raygrain_mrays, row.embree_single_mrays));
-    m.best.add(ratio(row.raygrain_mrays, row.embree_best_mrays));
+    m.single.add(ratio(row.raygrain_mrays, one->second->raygrain_mrays));
+    m.best.add(ratio(row.embree_single_mrays, one->second->embree_single_mrays));
   }
   return all;
 }
 
+std::string text_of_differences(const Row& row) {
+  if (row.embree_single_mrays == 0) return "-";
+  return row.differences == 0 ? "0"
+                              : fmt::format("{} (oracle: raygrain right in {} of {})", row.differences,
+                                            row.oracle_agrees, row.oracle_asked);
+}
+
+enum class Table { kNone, kRows, kBuilds };
+
+/// A table that goes on needs no new header.
+bool starts(Table table) {
+  static Table current = Table::kNone;
+  const bool is_new = current != table;
+  current = table;
+  return is_new;
+}
+
+double mebibytes(size_t bytes) {
+  return static_cast<double>(bytes) / 1048576;
+}
+
+Json to_json(const Row& r) {
+  return {{"suite", r.suite},
+          {"scene", r.scene},
+          {"triangles", r.triangles},
+          {"rays", r.rays},
+          {"query", r.query},
+          {"api", r.api},
+          {"threads", r.threads},
+          {"raygrain_mrays", r.raygrain_mrays},
+          {"raygrain_tree", r.tree},
+          {"embree_single_mrays", r.embree_single_mrays},
+          {"embree_single_mode", r.embree_single_mode},
+          {"embree_best_mrays", r.embree_best_mrays},
+          {"embree_best_mode", r.embree_best_mode},
+          {"ratio_single", to_json(ratio_single(r))},
+          {"ratio_best", to_json(ratio_best(r))},
+          {"differences", r.differences}};
+}
+
+Json to_json(const BuildRow& b) {
+  return {{"scene", b.scene},
+          {"triangles", b.triangles},
+          {"preset", b.preset},
+          {"threads", b.threads},
+          {"raygrain_seconds", b.raygrain_seconds},
+          {"embree_seconds", b.embree_seconds},
+          {"embree_quality", b.embree_quality},
+          {"ratio", to_json(ratio_of(b))},
+          {"raygrain_bytes", b.raygrain_bytes},
+          {"embree_bytes", b.embree_bytes},
+          {"sah_cost", b.sah_cost}};
+}
+
+Json geometric_means(const Results& results) {
+  Json json = Json::object();
+  for (const auto& [name, m] : means_of_rows(results))
+    json[name] = {{"ratio_single", to_json(m.single.value())}, {"ratio_best", to_json(m.best.value())}};
+  for (const auto& [name, mean] : means_of_builds(results)) json[name] = {{"ratio", to_json(mean.value())}};
+  for (const auto& [name, m] : scaling(results))
+    json["scaling_" + name] = {{"raygrain", to_json(m.single.value())}, {"embree_single", to_json(m.best.value())}};
+  return json;
+}
+
 }  // namespace
 
-void print_row(const Row& row) {
-  static bool has_header = false;
-  if (!has_header)
-    fmt::print("{:<16} {:>9} {:<16} {:<8} {:<7} {:>3} {:>9} {:>9} {:>7} {:>9} {:>7}  {:<26} {}\n", "scene", "triangles",
-               "rays", "query", "api", "thr", "raygrain", "Embree 1", "ratio", "best", "ratio", "best mode",
-               "differences");
-  has_header = true;
-  fmt::print("{:<16} {:>9} {:<16} {:<8} {:<7} {:>3} {:>9.3f} {:>9.3f} {:>7.3f} {:>9.3f} {:>7.3f}  {:<26} {}\n",
-             row.scene, row.triangles, row.rays, row.query, row.api, row.threads, row.raygrain_mrays,
-             row.embree_single_mrays, ratio(row.raygrain_mrays, row.embree_single_mrays), row.embree_best_mrays,
-             ratio(row.raygrain_mrays, row.embree_best_mrays), row.embree_best_mode,
-             row.differences == 0 ? "0"
-                                  : fmt::format("{} (oracle: raygrain right in {}/{})", row.differences,
-                                                row.oracle_agrees, row.oracle_asked));
+void report(const Row& row, Results& results) {
+  results.rows.push_back(row);
+  constexpr const char* kFormat =
+      "{:<18} {:>9} {:<16} {:<8} {:<12} {:>3} {:>9} {:<18} {:>9} {:>7} {:>9} {:>7}  {:<26} {}\n";
+  if (starts(Table::kRows))
+    fmt::print(kFormat, "\nscene", "triangles", "rays", "query", "api", "thr", "Mrays/s", "tree", "Embree 1", "ratio",
+               "best", "ratio", "best mode", "differences");
+  fmt::print(kFormat, row.scene, row.triangles, row.rays, row.query, row.api, row.threads,
+             fmt::format("{:.3f}", row.raygrain_mrays), row.tree, fmt::format("{:.3f}", row.embree_single_mrays),
+             text(ratio_single(row)), fmt::format("{:.3f}", row.embree_best_mrays), text(ratio_best(row)),
+             row.embree_best_mode, text_of_differences(row));
+  std::fflush(stdout);
+}
+
+void report(const BuildRow& row, Results& results) {
+  results.builds.push_back(row);
+  constexpr const char* kFormat = "{:<18} {:>9} {:<9} {:>3} {:>9} {:>11} {:>9} {:<7} {:>7} {:>9} {:>9} {:>7} {:>9}\n";
+  if (starts(Table::kBuilds))
+    fmt::print(kFormat, "\nscene", "triangles", "preset", "thr", "seconds", "Mtriangles/s", "Embree", "quality",
+               "ratio", "MiB", "Embree", "ratio", "SAH cost");
+  fmt::print(kFormat, row.scene, row.triangles, row.preset, row.threads, fmt::format("{:.4f}", row.raygrain_seconds),
+             fmt::format("{:.2f}", static_cast<double>(row.triangles) / row.raygrain_seconds * 1e-6),
+             fmt::format("{:.4f}", row.embree_seconds), row.embree_quality, text(ratio_of(row)),
+             fmt::format("{:.2f}", mebibytes(row.raygrain_bytes)), fmt::format("{:.2f}", mebibytes(row.embree_bytes)),
+             text(ratio(mebibytes(row.raygrain_bytes), mebibytes(row.embree_bytes))),
+             fmt::format("{:.2f}", row.sah_cost));
   std::fflush(stdout);
 }
 
 void print_summary(const Results& results) {
-  fmt::print("\n{:<16} {:>9} {:<9} {:>3} {:>9} {:>9} {:>7} {:>10} {:>10} {:>9}\n", "build", "triangles", "preset",
-             "thr", "raygrain", "Embree", "ratio", "MiB", "Embree", "SAH cost");
-  for (const BuildRow& b : results.builds)
-    fmt::print("{:<16} {:>9} {:<9} {:>3} {:>7.3f} s {:>7.3f} s {:>7.3f} {:>10.2f} {:>10.2f} {:>9.2f}\n", b.scene,
-               b.triangles, b.preset, b.threads, b.raygrain_seconds, b.embree_seconds,
-               ratio(b.embree_seconds, b.raygrain_seconds), static_cast<double>(b.raygrain_bytes) / 1048576,
-               static_cast<double>(b.embree_bytes) / 1048576, b.sah_cost);
   fmt::print("\ngeometric means of ratios (above 1: raygrain is faster)\n");
-  for (const auto& [name, m] : means(results))
-    fmt::print("{:<28} to Embree's best single rays {:.3f}, to its best mode {:.3f}\n", name, m.single.value(),
-               m.best.value());
+  for (const auto& [name, m] : means_of_rows(results))
+    fmt::print("{:<36} to Embree's best single rays {}, to its best mode {}\n", name, text(m.single.value()),
+               text(m.best.value()));
+  for (const auto& [name, mean] : means_of_builds(results)) fmt::print("{:<36} {}\n", name, text(mean.value()));
+  fmt::print("\nspeed on all threads by that on one\n");
+  for (const auto& [name, m] : scaling(results))
+    fmt::print("{:<36} raygrain {}, Embree's single rays {}\n", name, text(m.single.value()), text(m.best.value()));
 }
 
 void save_json(const Results& results, const std::string& path) {
-  using Json = nlohmann::ordered_json;
   const Environment environment = current_environment(0);
   Json json{{"environment",
              {{"commit", environment.commit},
@@ -90,37 +204,10 @@ void save_json(const Results& results, const std::string& path) {
               {"cpu", environment.cpu},
               {"threads", environment.threads}}}};
   json["rows"] = Json::array();
-  for (const Row& r : results.rows)
-    json["rows"].push_back({{"suite", r.suite},
-                            {"scene", r.scene},
-                            {"triangles", r.triangles},
-                            {"rays", r.rays},
-                            {"query", r.query},
-                            {"api", r.api},
-                            {"threads", r.threads},
-                            {"raygrain_mrays", r.raygrain_mrays},
-                            {"embree_single_mrays", r.embree_single_mrays},
-                            {"embree_best_mrays", r.embree_best_mrays},
-                            {"embree_best_mode", r.embree_best_mode},
-                            {"ratio_single", ratio(r.raygrain_mrays, r.embree_single_mrays)},
-                            {"ratio_best", ratio(r.raygrain_mrays, r.embree_best_mrays)},
-                            {"differences", r.differences}});
+  for (const Row& row : results.rows) json["rows"].push_back(to_json(row));
   json["builds"] = Json::array();
-  for (const BuildRow& b : results.builds)
-    json["builds"].push_back({{"scene", b.scene},
-                              {"triangles", b.triangles},
-                              {"preset", b.preset},
-                              {"threads", b.threads},
-                              {"raygrain_seconds", b.raygrain_seconds},
-                              {"embree_seconds", b.embree_seconds},
-                              {"embree_quality", b.embree_quality},
-                              {"ratio", ratio(b.embree_seconds, b.raygrain_seconds)},
-                              {"raygrain_bytes", b.raygrain_bytes},
-                              {"embree_bytes", b.embree_bytes},
-                              {"sah_cost", b.sah_cost}});
-  json["geomean"] = Json::object();
-  for (const auto& [name, m] : means(results))
-    json["geomean"][name] = {{"ratio_single", m.single.value()}, {"ratio_best", m.best.value()}};
+  for (const BuildRow& row : results.builds) json["builds"].push_back(to_json(row));
+  json["geomean"] = geometric_means(results);
   write_file_atomically(path, [&](std::ostream& out) { out << json.dump(2) << '\n'; });
 }
 

@@ -1,70 +1,76 @@
-// raygrain-bench: raygrain against Embree, or alone where the build found no Embree.
+// raygrain-bench: raygrain against Embree's best modes. Without Embree it shows raygrain alone.
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 
 #include <CLI/CLI.hpp>
 
 #include "raygrain/error.h"
-#include "raygrain/io.h"
 
 #include "base/parallel.h"
+#include "peer.h"
 #include "suite.h"
 
 namespace raygrain::bench {
 
-std::vector<std::string> scene_sources(const Settings& settings) {
-  std::vector<std::string> sources{"procedural:city?size=15", "procedural:forest?size=16",
-                                   "procedural:terrain?size=224"};
-  if (!settings.quick) {
-    sources.insert(sources.end(),
-                   {"procedural:city?size=48", "procedural:forest?size=49", "procedural:terrain?size=708"});
-    std::vector<std::string> files;
-    if (!settings.scenes.empty() && std::filesystem::is_directory(settings.scenes))
-      for (const auto& entry : std::filesystem::directory_iterator(settings.scenes))
-        if (entry.path().extension() == ".ply" || entry.path().extension() == ".obj")
-          files.push_back(entry.path().string());
-    std::ranges::sort(files);
-    sources.insert(sources.end(), files.begin(), files.end());
-  }
-  std::erase_if(sources, [&](const std::string& s) { return s.find(settings.filter) == std::string::npos; });
-  return sources;
+std::vector<Suite> suites() {
+  return {{"general", run_general}};
 }
 
-BenchScene load_bench_scene(const std::string& source) {
-  Scene scene = load_scene(source);
-  const size_t colon = source.find(':');
-  std::string name = std::filesystem::path(source).filename().string();
-  if (source.starts_with("procedural:")) {
-    name = source.substr(colon + 1);
-    name = name.substr(0, name.find('?')) + (scene.mesh.triangle_count() > 400000 ? " 1M" : " 100k");
+namespace {
+
+constexpr const char* kDefaultScenes = "../shared/scenes";
+
+std::vector<std::string> suite_names() {
+  std::vector<std::string> names{"all"};
+  for (const Suite& suite : suites()) names.emplace_back(suite.name);
+  return names;
+}
+
+/// A folder that was asked for must be there; the default one may be missing.
+void check_scenes(Settings& settings, bool is_given) {
+  if (std::filesystem::is_directory(settings.scenes)) return;
+  if (is_given) throw Error(ErrorCode::kNotFound, settings.scenes, "is no folder", "give --scenes a folder of models");
+  settings.scenes.clear();
+}
+
+void check_threads(Settings& settings) {
+  if (settings.threads.empty()) {
+    settings.threads = {1};
+    if (default_threads() > 1) settings.threads.push_back(default_threads());
   }
-  return {name, std::move(scene.mesh)};
+  if (std::ranges::count(settings.threads, 0u) > 0) throw Error(ErrorCode::kUsage, "--threads", "must be at least 1");
 }
 
 int run(int argc, char** argv) {
   Settings settings;
-  std::string suite = "all";
+  std::string wanted = "all";
   CLI::App app{"raygrain against Embree's best modes, on the same rays"};
-  app.add_option("--suite", suite, "general, rays or all")->check(CLI::IsMember({"general", "rays", "all"}));
+  app.add_option("--suite", wanted, "which figures")->check(CLI::IsMember(suite_names()))->capture_default_str();
   app.add_flag("--quick", settings.quick, "three small scenes, fewer rays");
-  settings.scenes = "../shared/scenes";
-  app.add_option("--scenes", settings.scenes, "a folder with more .ply and .obj scenes");
+  settings.scenes = kDefaultScenes;
+  app.add_option("--scenes", settings.scenes, "a folder with more scenes (not with --quick)")->capture_default_str();
   app.add_option("--only", settings.filter, "only scenes whose source holds this text");
   app.add_option("--json", settings.json, "write all figures to this file");
   app.add_option("--threads", settings.threads, "thread counts; default 1 and all");
-  CLI11_PARSE(app, argc, argv);
-  if (settings.threads.empty()) settings.threads = {1};
-  if (app.count("--threads") == 0 && default_threads() > 1) settings.threads.push_back(default_threads());
-
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;
+  }
+  check_scenes(settings, app.count("--scenes") > 0);
+  check_threads(settings);
+  if (!Peer::is_there()) std::puts("Embree 3 was not there at build time: raygrain alone");
   Results results;
-  if (suite != "rays")
-    for (const std::string& source : scene_sources(settings)) run_general(load_bench_scene(source), settings, results);
+  for (const Suite& suite : suites())
+    if (wanted == "all" || wanted == suite.name) suite.run(settings, results);
   print_summary(results);
   if (!settings.json.empty()) save_json(results, settings.json);
   return 0;
 }
 
+}  // namespace
 }  // namespace raygrain::bench
 
 int main(int argc, char** argv) {
@@ -73,5 +79,8 @@ int main(int argc, char** argv) {
   } catch (const raygrain::Error& error) {
     std::fprintf(stderr, "raygrain-bench: error: %s\n", error.what());
     return error.code == raygrain::ErrorCode::kUsage ? 2 : 1;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "raygrain-bench: error: %s\n", error.what());
+    return 1;
   }
 }

@@ -1,4 +1,4 @@
-// What the benchmark measures and how it is shown.
+// What the benchmark measures and how it is shown. A suite is one file, suite_NAME.cpp, and one line in suites().
 #pragma once
 
 #include <cstddef>
@@ -15,16 +15,18 @@ struct Settings {
   std::string scenes;             // folder of further models; may be empty
   std::string json;               // file to write; may be empty
   std::string filter;             // names of scenes hold this
-  std::vector<unsigned> threads;  // each is measured
+  std::vector<unsigned> threads;  // each is measured; 1 first
 };
 
+/// One ray set, traced by one interface of raygrain and by Embree. 0 Mrays/s: not measured.
 struct Row {
   std::string suite, scene;
   size_t triangles = 0;
-  std::string rays, query, api;
+  std::string rays, query, api;  // query: closest or any
   unsigned threads = 1;
-  double raygrain_mrays = 0, embree_single_mrays = 0, embree_best_mrays = 0;  // 0: not measured
-  std::string embree_best_mode;
+  std::string tree;  // raygrain's: the fastest of those that the suite built, as Embree's mode is
+  double raygrain_mrays = 0, embree_single_mrays = 0, embree_best_mrays = 0;
+  std::string embree_single_mode, embree_best_mode;
   size_t differences = 0;                      // hit here and miss there, or t further apart than rounding explains
   size_t oracle_agrees = 0, oracle_asked = 0;  // of the differences: how often brute force gave raygrain's answer
 };
@@ -49,12 +51,24 @@ struct BenchScene {
   std::string name;
   TriangleMesh mesh;
 };
+
+struct Suite {
+  const char* name;
+  void (*run)(const Settings& settings, Results& results);
+};
+
+/// All suites, in the order in which they run.
+std::vector<Suite> suites();
+
+void run_general(const Settings& settings, Results& results);
+
+/// What load_bench_scene takes: the procedural scenes, in small or in both sizes, and the models of settings.scenes.
 std::vector<std::string> scene_sources(const Settings& settings);
 BenchScene load_bench_scene(const std::string& source);
 
-void run_general(const BenchScene& scene, const Settings& settings, Results& results);
-
-void print_row(const Row& row);
+/// Adds to the results and prints at once.
+void report(const Row& row, Results& results);
+void report(const BuildRow& row, Results& results);
 void print_summary(const Results& results);
 void save_json(const Results& results, const std::string& path);
 

@@ -26,6 +26,8 @@ class Arguments {
   explicit Arguments(CLI::App& app) : app_(&app) {}
 
   void operand(const std::string& name, std::string& target, const std::string& help);
+  /// One or more, the last operands of the command.
+  void operands(const std::string& name, std::vector<std::string>& targets, const std::string& help);
   void text(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);
   /// The name of a file or folder. "-" is refused, so that none of that name is made.
   void file(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);

@@ -13,6 +13,8 @@ Action declare_generate(Arguments& arguments);
 Action declare_convert(Arguments& arguments);
 Action declare_info(Arguments& arguments);
 Action declare_recipes(Arguments& arguments);
+Action declare_report(Arguments& arguments);
+Action declare_study(Arguments& arguments);
 
 inline constexpr int kSuccess = 0, kBadData = 1, kBadUsage = 2;
 

@@ -32,9 +32,11 @@ struct Command {
 
 constexpr Command kCommands[] = {
     {"compare", "Compare trees of several recipes for the same areas and rays: the main job", declare_compare},
+    {"study", "Run the paper's evaluation, or a grid of experiments of one's own", declare_study},
     {"build", "Build one tree and write it as JSON", declare_build},
     {"analyze", "Print all metrics of one tree", declare_analyze},
     {"trace", "Find the nearest hits of rays from a file", declare_trace},
+    {"report", "Draw the results of studies as a page of charts", declare_report},
     {"recipes", "List the measures, orientations and builders that recipes are made of", declare_recipes},
 };
 constexpr Command kSceneCommands[] = {
@@ -126,9 +128,12 @@ Error unexpected_word(const CLI::App& app, const std::string& word) {
 Error usage_error(const CLI::App& program, const CLI::ParseError& error) {
   const CLI::App& app = *deepest(program);
   // A word that nothing expects is the likelier mistake than what it leaves missing.
-  for (const CLI::App* level = &app; level; level = level->get_parent())
+  const CLI::App* level = &app;
+  do {
     if (const std::vector<std::string> extras = level->remaining(); !extras.empty())
       return unexpected_word(*level, extras.front());
+    level = level->get_parent();
+  } while (level != nullptr);
   std::string what = error.what();
   if (what == "A subcommand is required") what = "a command is required";
   return Error(ErrorCode::kUsage, full_name(app), what, "See " + full_name(app) + " --help");

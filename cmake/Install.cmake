@@ -12,3 +12,5 @@ configure_package_config_file(cmake/raygrain-config.cmake.in ${PROJECT_BINARY_DI
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/raygrain-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/raygrain-config.cmake ${PROJECT_BINARY_DIR}/raygrain-config-version.cmake
         DESTINATION ${package_dir})
+# The interactive page of `raygrain report`, where it was built (make report-page).
+install(FILES ${PROJECT_BINARY_DIR}/share/raygrain/report-page.html DESTINATION share/raygrain OPTIONAL)

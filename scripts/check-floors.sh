@@ -8,13 +8,23 @@ cd "${1:-$(dirname "$0")/..}"
     # module -> floor
     split("base 1 geometry 2 build 3 rays 3 io 4 heuristic 4 trace 4 accel 5 analyze 6 study 7 report 7 cli 8", m, " ")
     for (i = 1; i in m; i += 2) floor[m[i]] = m[i + 1]
-    # public header -> module
-    h = "error base vec geometry bounds geometry ray geometry mesh geometry frame geometry region geometry area geometry"
-    h = h " triangle geometry measure build orientation build bvh build build build rays rays scene io io io"
-    h = h " heuristics heuristic registry heuristic trace trace wide trace refine build top_level accel accelerator accel"
-    h = h " fields analyze analyze analyze compare study report report raygrain cli"
-    split(h, p, " ")
-    for (i = 1; i in p; i += 2) owner[p[i]] = p[i + 1]
+    # module: its public headers
+    own("base", "error")
+    own("geometry", "vec bounds ray mesh frame ray_frame region area triangle")
+    own("build", "measure orientation bvh build refine")
+    own("rays", "rays")
+    own("io", "scene io")
+    own("heuristic", "heuristics registry")
+    own("trace", "trace wide frame_tree coverage")
+    own("accel", "top_level accelerator")
+    own("analyze", "fields analyze")
+    own("study", "compare study")
+    own("report", "report chart study_report")
+    own("cli", "raygrain")
+  }
+  function own(module, headers,   list, i) {
+    split(headers, list, " ")
+    for (i in list) owner[list[i]] = module
   }
   function module_of(path,   parts, n) {
     n = split(path, parts, "/")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs raygrain's Debian packages: `build` (library, program, tests; the default) or `full` (Clang, coverage, format too),
-# or `bench` (Embree too).
+# or `bench` (Embree too), `report-page` (node and npm too), `browser` (Chromium too).
 # Works as root and with sudo; does nothing when everything is there.
 set -euo pipefail
 
@@ -13,6 +13,14 @@ fi
 
 if [ "${1:-build}" = bench ]; then
   packages+=(libembree-dev)
+fi
+
+if [ "${1:-build}" = report-page ] && ! command -v npm >/dev/null; then
+  packages+=(nodejs npm)
+fi
+
+if [ "${1:-build}" = browser ] && ! command -v chromium >/dev/null; then
+  packages+=(chromium fonts-dejavu-core)
 fi
 
 missing=()

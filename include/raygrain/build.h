@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "raygrain/bvh.h"
@@ -51,11 +52,13 @@ struct SplitState {
   bool has_split = false;  // a split was found along an earlier orientation
   float ratio = kInf;      // (p_left + p_right) / p_node of the best split so far; infinity without one
   AxisChoice next;
-  int tried = 0;  // orientations tried so far
+  int tried = 0;       // orientations tried so far
+  int last_axis = -1;  // the one tried last at this node, before a fallback too; -1 for none
 };
 
 enum class SplitVerdict {
   kTry,                // try the next orientation
+  kSkip,               // pass over the next orientation
   kSatisfied,          // stop with the best so far
   kFallBack,           // let the fallback strategy split; keep the better under the primary measure
   kFallBackReplacing,  // let the fallback strategy split and forget the best so far (as the published runs did)
@@ -69,6 +72,28 @@ struct StopState {
 };
 using StopRule = std::function<bool(const StopState&, const PaperParameters&)>;
 
+/// What a plane costs: the sum of both sides, and how many primitives each has (neither is 0).
+struct PlanePrice {
+  double cost = 0;
+  uint32_t left_count = 0, right_count = 0;
+};
+
+/// Is a candidate plane better than the best one before it along the same axis? Asked in ascending order of planes.
+using PlanePreference = std::function<bool(const PlanePrice& candidate, const PlanePrice& best)>;
+
+/// A finished split of one node.
+struct SplitOutcome {
+  NodeContext node;
+  Bounds left, right;
+  float left_measure = 0, right_measure = 0;  // under the strategy that judges the children
+  bool forced = false;                        // the decision asked for the fallback
+  bool fallback = false;                      // and got its split
+};
+
+/// The measures (left, right) that the children start with: node_measure of their SplitState and measure of their
+/// StopState. Not negative; may be infinite.
+using HandDown = std::function<std::pair<float, float>(const SplitOutcome&)>;
+
 /// Everything a builder lets its user replace. An empty function means the default named beside it.
 struct BuildStrategy {
   RayMeasure measure;            // surface area
@@ -78,6 +103,9 @@ struct BuildStrategy {
   PartitionRule partition;       // the centroid's coordinate
   SplitDecision decision;        // decide_split
   StopRule stop;                 // stop_by_parameters
+  // Of build_paper only:
+  PlanePreference preference;  // the lower cost; of planes that cost nothing the one with the most even counts
+  HandDown hand_down;          // left_measure and right_measure
 };
 
 /// A box around the part of a primitive that lies in a box, empty only where no part does: what spatial splits need to

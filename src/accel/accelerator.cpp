@@ -22,6 +22,7 @@ struct Accelerator::Parts {
   SearchTree global;
   AreaTable areas;
   Traversal traversal = Traversal::kWide;
+  std::vector<Coverage> coverages = {};  // parallel to `locals`, or empty
 
   Hit nearest(const Ray& ray, AcceleratorCounters* counters) const;
   bool any(const Ray& ray, AcceleratorCounters* counters) const;
@@ -135,9 +136,10 @@ Accelerator::Accelerator(TriangleMesh mesh, std::vector<InfluenceArea> areas, co
   auto shared = std::make_shared<const TriangleMesh>(std::move(mesh));
   BuiltTrees trees = build_trees(*shared, areas, options);
   AreaTable table = make_area_table(trees.locals, options.top_level);
-  parts_ =
-      std::make_shared<const Parts>(Parts{std::move(shared), std::move(trees.locals), std::move(trees.local_searches),
-                                          std::move(*trees.global), std::move(table), options.traversal});
+  std::vector<Coverage> coverages = build_coverages(shared, areas, options);
+  parts_ = std::make_shared<const Parts>(Parts{std::move(shared), std::move(trees.locals),
+                                               std::move(trees.local_searches), std::move(*trees.global),
+                                               std::move(table), options.traversal, std::move(coverages)});
 }
 
 Accelerator::Accelerator(std::shared_ptr<const TriangleMesh> mesh, std::vector<LocalTree> locals,
@@ -221,6 +223,10 @@ void Accelerator::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, 
              [&](size_t i, AcceleratorCounters* count) { flags[i] = parts_->any(rays[i], count) ? 1 : 0; });
 }
 
+std::span<const Coverage> Accelerator::coverages() const {
+  return parts_->coverages;
+}
+
 const TriangleMesh& Accelerator::mesh() const {
   return *parts_->mesh;
 }
@@ -246,6 +252,7 @@ size_t Accelerator::memory_bytes() const {
   bytes += parts_->areas.geometries.capacity() * sizeof(AreaGeometry);
   bytes += parts_->areas.ranks.capacity() * sizeof(uint32_t);
   for (const LocalTree& local : parts_->locals) bytes += sizeof(LocalTree) + raygrain::memory_bytes(*local.tree);
+  for (const Coverage& coverage : parts_->coverages) bytes += coverage.memory_bytes();
   return bytes + wide_memory_bytes();
 }
 

@@ -43,6 +43,19 @@ SearchTree make_search_tree(const TriangleMesh& mesh, std::shared_ptr<const Bvh>
   return {mesh, std::move(binary), std::move(wide)};
 }
 
+std::vector<Coverage> build_coverages(const std::shared_ptr<const TriangleMesh>& mesh,
+                                      std::span<const InfluenceArea> areas, const AcceleratorOptions& options) {
+  if (!options.coverage || options.traversal == Traversal::kBinary) return {};
+  CoverageOptions coverage = *options.coverage;
+  coverage.threads = options.threads;
+  if (!coverage.isa) coverage.isa = options.isa;
+  std::vector<Coverage> coverages(areas.size());
+  parallel_for(areas.size(), 1, options.threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) coverages[i] = Coverage(mesh, areas[i], coverage);
+  });
+  return coverages;
+}
+
 /// One task per tree, the global one first because it is the longest.
 BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> areas,
                        const AcceleratorOptions& options) {

@@ -79,7 +79,11 @@ Choice AxisBins::best_plane(const ActiveStrategy& strategy, const NodeContext& n
     const float left = measures_[i], right = measures_[count + i];
     const double cost =
         strategy.cost(left, candidate.left_count, node) + strategy.cost(right, node.count - candidate.left_count, node);
-    if (!is_better(candidate, cost, best, node.count, tie)) continue;
+    const bool better = best && tie == Tie::kLowerPlane && strategy.has_preference()
+                            ? strategy.prefers({cost, candidate.left_count, node.count - candidate.left_count},
+                                               {best.cost, best.left_count, node.count - best.left_count})
+                            : is_better(candidate, cost, best, node.count, tie);
+    if (!better) continue;
     best = {&strategy,
             axis.axis,
             axis.quality,

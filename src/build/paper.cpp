@@ -39,6 +39,7 @@ class PaperBuilder {
     splitter.choose = [this](const OpenNode& node, std::span<const uint32_t> prims, NodeLog& note) {
       return choose(node, prims, note);
     };
+    splitter.hands_down = true;
     return builder::build_top_down(input_, options_, splitter, laps_, log);
   }
 
@@ -56,6 +57,7 @@ class PaperBuilder {
   Choice choose(const OpenNode& node, std::span<const uint32_t> prims, NodeLog& note) {
     const ActiveStrategy& own = judge(node.context.level);
     note.fallback = &own == &fallback_;
+    last_axis_ = -1;
     Search search = try_orientations(own, node.context, node.measure, prims, note);
     const bool falls_back =
         search.verdict == SplitVerdict::kFallBack || search.verdict == SplitVerdict::kFallBackReplacing;
@@ -76,12 +78,16 @@ class PaperBuilder {
     SplitState state;
     state.node = node;
     state.node_measure = node_measure;
-    for (; state.tried < order.count; ++state.tried) {
-      state.next = order.choices[static_cast<size_t>(state.tried)];
+    state.last_axis = last_axis_;
+    for (const AxisChoice& next : std::span(order.choices).first(static_cast<size_t>(order.count))) {
+      state.next = next;
       search.verdict = strategy.decide(state);
       laps_.lap(&BuildTimes::orientations);
+      if (search.verdict == SplitVerdict::kSkip) continue;
       if (search.verdict != SplitVerdict::kTry) break;
       ++note.orientations;
+      ++state.tried;
+      state.last_axis = last_axis_ = state.next.axis;
       const Choice choice = best_along(strategy, node, state.next, prims);
       if (choice && (!search.best || choice.cost < search.best.cost)) search.best = choice;
       if (search.best) {
@@ -134,6 +140,7 @@ class PaperBuilder {
   builder::Laps& laps_;
   ActiveStrategy primary_, fallback_;
   AxisBins bins_;
+  int last_axis_ = -1;  // tried last at the open node
 };
 
 }  // namespace

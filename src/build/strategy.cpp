@@ -123,6 +123,14 @@ SplitVerdict ActiveStrategy::decide(const SplitState& state) const {
   return strategy_.decision ? strategy_.decision(state, parameters_) : decide_split(state, parameters_);
 }
 
+std::pair<float, float> ActiveStrategy::hand_down(const SplitOutcome& outcome) const {
+  const std::pair<float, float> measures = strategy_.hand_down(outcome);
+  for (const float value : {measures.first, measures.second})
+    if (!(value >= 0))
+      blame(outcome.node, "the children were handed the measure " + text(value), "a measure must not be negative");
+  return measures;
+}
+
 void ActiveStrategy::planes(const NodeContext& node, const Bounds& keys, int axis, std::vector<float>& out) const {
   strategy_.planes(node, keys, axis, parameters_.bins, out);
   for (size_t i = 0; i < out.size(); ++i)

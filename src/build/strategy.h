@@ -47,6 +47,15 @@ class ActiveStrategy {
   bool stops(const NodeContext& node, float measure) const;
   SplitVerdict decide(const SplitState& state) const;
 
+  bool has_preference() const { return static_cast<bool>(strategy_.preference); }
+  bool prefers(const PlanePrice& candidate, const PlanePrice& best) const {
+    return strategy_.preference(candidate, best);
+  }
+
+  bool has_hand_down() const { return static_cast<bool>(strategy_.hand_down); }
+  /// The user's measures for the children; throws kBadHeuristic for a negative one or NaN.
+  std::pair<float, float> hand_down(const SplitOutcome& outcome) const;
+
   bool has_planes() const { return static_cast<bool>(strategy_.planes); }
   /// The user's candidate planes; throws kBadHeuristic unless ascending and finite.
   void planes(const NodeContext& node, const Bounds& keys, int axis, std::vector<float>& out) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 #include "base/random.h"
 #include "build/monitor.h"
@@ -93,6 +94,7 @@ Bvh build_top_down(const Input& input, const BuildOptions& options, const Splitt
     note.axis = static_cast<int8_t>(choice.axis);
     note.quality = choice.quality;
     note.ratio = children_ratio(choice, node.measure);
+    const bool forced = note.forced, fallback = note.fallback;  // `notes` grows below
 
     // Split.
     partition(input, prims, choice, context, scratch);
@@ -112,6 +114,9 @@ Bvh build_top_down(const Input& input, const BuildOptions& options, const Splitt
       left.measure = next.measure(left.context.bounds, left.context);
       right.measure = next.measure(right.context.bounds, right.context);
     }
+    if (const ActiveStrategy& own = splitter.judge(context.level); splitter.hands_down && own.has_hand_down())
+      std::tie(left.measure, right.measure) =
+          own.hand_down({context, choice.left, choice.right, left.measure, right.measure, forced, fallback});
     open.push_back(right);
     open.push_back(left);
     laps.lap(&BuildTimes::nodes);

@@ -27,6 +27,8 @@ struct Splitter {
 
   /// A way to split the node, or no choice for a leaf. Both measures are the judge's of the node itself.
   std::function<Choice(const OpenNode&, std::span<const uint32_t> prims, NodeLog&)> choose;
+
+  bool hands_down = false;  // BuildStrategy::hand_down is asked
 };
 
 /// Depth first, left before right; children are allocated in pairs. The stack holds at most one node per level and one

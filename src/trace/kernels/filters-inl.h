@@ -82,7 +82,7 @@ struct BoxFilter {
 /// Bits of triangles that the ray may hit, bits of those that it surely hits, and where.
 struct Candidates {
   uint32_t possible, sure;
-  alignas(32) float earliest[8], latest[8];  // of t, for possible ones; NaN where unknown
+  alignas(32) float earliest[8], latest[8];  // of t, for possible ones; earliest = -infinity where unknown
 };
 
 /// A ray against eight triangles.
@@ -91,14 +91,16 @@ struct TriangleFilter {
   Eight earliest;
   float length;
 
-  HWY_INLINE explicit TriangleFilter(const Ray& ray)
-      : origin(broadcast(ray.origin)),
-        direction(broadcast(ray.direction)),
-        earliest(broadcast(ray.tmin)),
-        length(std::max(std::max(std::abs(ray.direction.x), std::abs(ray.direction.y)), std::abs(ray.direction.z))) {}
+  HWY_INLINE void prepare(const Ray& ray) {
+    origin = broadcast(ray.origin);
+    direction = broadcast(ray.direction);
+    earliest = broadcast(ray.tmin);
+    length = std::max(std::max(std::abs(ray.direction.x), std::abs(ray.direction.y)), std::abs(ray.direction.z));
+  }
 
-  /// Returns found.possible; where it is 0, `found` is not set.
-  HWY_INLINE uint32_t operator()(const WideLeaf& leaf, ChildRef ref, float bound, Candidates& found) const {
+  /// Returns found.possible. kEarlyOut: where it is 0, `found` may not be set.
+  template <bool kEarlyOut>
+  HWY_INLINE uint32_t test(const WideLeaf& leaf, ChildRef ref, float bound, Candidates& found) const {
     constexpr float kFloor = 0x1p-56f, kTiny = 0x1p-100f;  // cover what underflows
     const float size = size_of(ref);
     const EightVectors a = load_corner(leaf, 0);
@@ -114,25 +116,29 @@ struct TriangleFilter {
     const Eight below = broadcast(0.0f) - error;
     const uint32_t not_negative = less_equal(below, lowest), not_positive = less_equal(highest, error);
     const uint32_t inside = (not_negative | not_positive) & ((1u << triangles_of(ref)) - 1);
-    if (inside == 0) return 0;
+    if (kEarlyOut && inside == 0) return 0;
 
     const float area = 64 * kRoundoff * size * size;
     const Eight sum_error = broadcast(area * length + kFloor);
     const Eight numerator_error = multiply_add(broadcast(area), distance, broadcast(kFloor));
-    const Eight t = dot(to_a, normal) / sum;
-    const Eight magnitude = absolute(sum), t_size = absolute(t);
-    const Eight doubled = multiply_add(t_size, sum_error, numerator_error) / magnitude;
-    const Eight twice = multiply_add(doubled, broadcast(2.0f), broadcast(kTiny));
-    const Eight radius = multiply_add(t_size, broadcast(8 * kRoundoff), twice);
+    const Eight inverse = broadcast(1.0f) / sum;
+    const Eight t = dot(to_a, normal) * inverse;
+    const Eight magnitude = absolute(sum), t_size = absolute(t), twice = absolute(inverse + inverse);
+    const Eight slack = multiply_add(t_size, broadcast(8 * kRoundoff), broadcast(kTiny));
+    const Eight radius = multiply_add(multiply_add(t_size, sum_error, numerator_error), twice, slack);
     const Eight first = t - radius, last = t + radius;
     const uint32_t steep = less_equal(broadcast(4.0f) * sum_error, magnitude);
     const uint32_t early = less_equal(first, broadcast(bound)), late = less_equal(earliest, last);
     store(first, found.earliest);
     store(last, found.latest);
     found.possible = inside & (~steep | (early & late));
+    for (uint32_t flat = found.possible & ~steep; flat != 0; flat &= flat - 1)
+      found.earliest[std::countr_zero(flat)] = -std::numeric_limits<float>::infinity();
+    for (uint32_t flat = found.possible & ~steep; flat != 0; flat &= flat - 1)
+      found.earliest[std::countr_zero(flat)] = -std::numeric_limits<float>::infinity();
     // Strictly inside, and t surely in range.
     const uint32_t clear = ~(less_equal(lowest, error) & less_equal(below, highest));
-    found.sure = inside & steep & clear & less_equal(earliest, first);
+    found.sure = found.possible & steep & clear & less_equal(earliest, first);
     return found.possible;
   }
 };

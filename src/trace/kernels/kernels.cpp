@@ -8,7 +8,9 @@
 // The one above must come first.
 #include <hwy/highway.h>
 
+#include "trace/kernels/any_stream-inl.h"
 #include "trace/kernels/kernels.h"
+#include "trace/kernels/nearest_stream-inl.h"
 #include "trace/kernels/searches-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -39,11 +41,13 @@ bool can_hit(const Ray& ray) {
 }
 
 void nearest_of_many(const WideTree& tree, const Ray* rays, Hit* hits, size_t count) {
+  if constexpr (kHasStreams) return NearestStream(tree, rays, hits, count).run();
   for (size_t i = 0; i < count; ++i)
     hits[i] = can_hit(rays[i]) ? nearest<false, true>(tree, rays[i], {}, -kInf, nullptr) : Hit{};
 }
 
 void any_of_many(const WideTree& tree, const Ray* rays, uint8_t* flags, size_t count) {
+  if constexpr (kHasStreams) return AnyStream(tree, rays, flags, count).run();
   for (size_t i = 0; i < count; ++i)
     flags[i] = can_hit(rays[i]) && any<false, true>(tree, rays[i], -kInf, nullptr) ? 1 : 0;
 }

@@ -16,6 +16,7 @@
 
 #include "base/check.h"
 #include "trace/careful.h"
+#include "trace/kernels/confirm-inl.h"
 #include "trace/kernels/filters-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -54,9 +55,9 @@ HWY_INLINE Key key_of(const float* entry, size_t lane) {
   return static_cast<Key>(std::bit_cast<uint32_t>(entry[lane])) << 32 | lane;
 }
 HWY_INLINE void sort(Key& a, Key& b) {
-  const Key least = std::min(a, b);
-  b = std::max(a, b);
-  a = least;
+  const Key swap = (a ^ b) & (0 - static_cast<Key>(b < a));  // no branch: it would be hard to predict
+  a ^= swap;
+  b ^= swap;
 }
 HWY_INLINE void fetch(const WideTree& tree, ChildRef child) {
   const std::byte* lines = tree.memory.data() + (child >> 20);
@@ -135,44 +136,81 @@ HWY_INLINE void count_leaf(ChildRef leaf, TraceCounters* counters) {
   }
 }
 
-/// Triangles that may be the nearest, until intersect_triangle has the last word.
+/// Leaves with triangles that may be the nearest, until double precision has the last word.
 template <bool kCounting>
 class Pending {
  public:
+  Pending() = default;
   HWY_INLINE Pending(const Ray& ray, const Hit& known, TraceCounters* counters)
-      : ray_(ray), best_(known), counters_(counters) {}
-
-  HWY_INLINE void add(const WideLeaf& leaf, size_t lane, float earliest, float& bound) {
-    if (size_ == kCapacity) decide(bound);
-    entries_[size_++] = {leaf.bytes, leaf.count, static_cast<uint32_t>(lane), earliest};
+      : ray_(&ray), best_(known), counters_(counters) {}
+  HWY_INLINE void start(const Ray& ray) {
+    ray_ = &ray;
+    best_ = {};
+    size_ = 0;
   }
-  /// Decides all of them; no hit beyond `bound` matters.
-  void decide(float& bound) {
-    while (size_ > 0) {
-      const Candidate& next = entries_[--size_];
-      if (next.earliest > bound) continue;
-      if constexpr (kCounting) ++counters_->triangle_tests;
-      Hit hit;
-      if (!confirm({next.bytes, next.count}, next.lane, ray_, hit) || !is_nearer(hit, best_)) continue;
-      best_ = hit;
-      bound = std::min(bound, hit.t);
+
+  /// What the filter found in a leaf. Returns the new bound: no hit beyond it matters.
+  template <bool kPruning>
+  HWY_INLINE float add(const WideLeaf& leaf, float size, const Candidates& found, float bound) {
+    float earliest = kInf;
+    for (uint32_t bits = found.possible; bits != 0;) {
+      const size_t lane = take_lowest(bits);
+      earliest = std::min(earliest, found.earliest[lane]);
+      if (kPruning && (found.sure >> lane & 1) != 0) bound = std::min(bound, found.latest[lane]);
     }
+    if (size_ == kCapacity) bound = decide_apart(bound);
+    entries_[size_++] = {leaf.bytes, leaf.count, found.possible, size, earliest};
+    return bound;
+  }
+  /// Decides all of them; no hit beyond `bound` matters. Returns the new bound.
+  HWY_INLINE float decide(float bound) {
+    while (size_ > 0) {  // the last one first: it is the nearest most often
+      const Entry& next = entries_[--size_];
+      if (next.earliest > bound) continue;
+      if constexpr (kCounting) counters_->triangle_tests += static_cast<uint64_t>(std::popcount(next.lanes));
+      decide(next);
+      bound = std::min(bound, best_.t);
+    }
+    return bound;
   }
   const Hit& best() const { return best_; }
 
  private:
-  struct Candidate {
+  struct Entry {
     const std::byte* bytes;  // of the leaf
-    uint32_t count, lane;
-    float earliest;  // NaN where unknown
+    uint32_t count, lanes;
+    float size, earliest;
   };
   static constexpr size_t kCapacity = 16;
 
-  const Ray& ray_;
+  HWY_NOINLINE float decide_apart(float bound) { return decide(bound); }
+
+  HWY_INLINE void decide(const Entry& entry) {
+    const WideLeaf leaf{entry.bytes, entry.count};
+    for (size_t first = 0; first < kWidth; first += kDoubles) {
+      const uint32_t lanes = entry.lanes >> first & ((1u << kDoubles) - 1);
+      if (lanes == 0) continue;
+      Verdicts verdicts;
+      confirm(*ray_, leaf, entry.size, first, verdicts);
+      for (uint32_t hits = verdicts.hit & lanes; hits != 0;) {
+        const size_t i = take_lowest(hits);
+        take({verdicts.t[i], verdicts.u[i], verdicts.v[i], leaf.id(first + i)});
+      }
+      for (uint32_t unsure = verdicts.unsure & lanes; unsure != 0;) {
+        Hit hit;
+        if (confirm(leaf, first + take_lowest(unsure), *ray_, hit)) take(hit);
+      }
+    }
+  }
+  HWY_INLINE void take(const Hit& hit) {
+    if (is_nearer(hit, best_)) best_ = hit;
+  }
+
+  const Ray* ray_ = nullptr;
   Hit best_;
-  TraceCounters* counters_;
+  TraceCounters* counters_ = nullptr;
   size_t size_ = 0;
-  Candidate entries_[kCapacity];  // NOLINT: filled as far as size_ says
+  Entry entries_[kCapacity];  // NOLINT: filled as far as size_ says
 };
 
 /// kPruning = false visits everything that the ray meets within its own interval.
@@ -181,7 +219,8 @@ Hit nearest(const WideTree& tree, const Ray& ray, const Hit& known, float skip_b
   BoxFilter boxes;
   if (!boxes.prepare(tree, ray, skip_before))
     return nearest_carefully(tree, ray, known, {skip_before, kPruning}, counters);
-  const TriangleFilter triangles(ray);
+  TriangleFilter triangles;
+  triangles.prepare(ray);
   Pending<kCounting> pending(ray, known, counters);
   float bound = kPruning ? std::min(ray.tmax, known.t) : ray.tmax;
   Stack stack;
@@ -200,17 +239,14 @@ Hit nearest(const WideTree& tree, const Ray& ray, const Hit& known, float skip_b
       const WideLeaf leaf = tree.leaf(current);
       count_leaf<kCounting>(current, counters);
       Candidates found;
-      uint32_t bits = triangles(leaf, current, bound, found);
-      while (bits != 0) {
-        const size_t lane = take_lowest(bits);
-        if (found.earliest[lane] > bound) continue;
-        pending.add(leaf, lane, found.earliest[lane], bound);
-        if (kPruning && (found.sure >> lane & 1) != 0) bound = std::min(bound, found.latest[lane]);
+      uint32_t bits = triangles.test<true>(leaf, current, bound, found);
+      if (bits != 0) {
+        bound = pending.template add<kPruning>(leaf, size_of(current), found, bound);
       }
     }
     do {
       if (stack.size == 0) {
-        pending.decide(bound);
+        pending.decide(kPruning ? bound : kInf);
         return pending.best();
       }
       --stack.size;
@@ -223,7 +259,8 @@ template <bool kCounting, bool kPruning>
 bool any(const WideTree& tree, const Ray& ray, float skip_before, TraceCounters* counters) {
   BoxFilter boxes;
   if (!boxes.prepare(tree, ray, skip_before)) return any_carefully(tree, ray, {skip_before, kPruning}, counters);
-  const TriangleFilter triangles(ray);
+  TriangleFilter triangles;
+  triangles.prepare(ray);
   bool hit_something = false;
   Stack stack;
   ChildRef current = node_ref(0);
@@ -234,20 +271,21 @@ bool any(const WideTree& tree, const Ray& ray, float skip_before, TraceCounters*
       alignas(32) float entry[kWidth];
       uint32_t bits = boxes(node, ray.tmax, entry);
       if (bits != 0) {
-        current = node.child[take_lowest(bits)];
+        const auto last = static_cast<size_t>(31 - std::countl_zero(bits));  // the most probable
+        bits ^= 1u << last;
         while (bits != 0) {
-          const auto lane = static_cast<size_t>(31 - std::countl_zero(bits));
-          bits ^= 1u << lane;
-          fetch(tree, node.child[lane]);
-          stack.push(node.child[lane], 0);
+          const ChildRef child = node.child[take_lowest(bits)];
+          fetch(tree, child);
+          stack.push(child, 0);
         }
+        current = node.child[last];
         continue;
       }
     } else {
       const WideLeaf leaf = tree.leaf(current);
       count_leaf<kCounting>(current, counters);
       Candidates found;
-      uint32_t bits = triangles(leaf, current, ray.tmax, found);
+      uint32_t bits = triangles.test<true>(leaf, current, ray.tmax, found);
       while (bits != 0) {
         const size_t lane = take_lowest(bits);
         const bool is_sure = (found.sure >> lane & 1) != 0 && found.latest[lane] <= ray.tmax;

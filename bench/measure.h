@@ -1,0 +1,26 @@
+// Rows of a result table: raygrain's interfaces raced against Embree's best modes on one set of rays.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "peer.h"
+#include "race.h"
+#include "suite.h"
+
+namespace raygrain::bench {
+
+/// A way to use raygrain.
+struct Entrant {
+  std::string api;   // one row each
+  std::string tree;  // of entrants with the same api the fastest is shown
+  Tracer trace;
+};
+
+/// Races the entrants (of each api the two fastest on the first 50,000 rays) and the peer's best modes, at least seven
+/// rounds, and reports a row for each api. `row` holds suite and scene. Differences between the answers are counted,
+/// and up to ten of them put to the oracle; entrants of one set must agree bit for bit, or std::logic_error.
+void measure(const Row& row, const TriangleMesh& mesh, const BenchRays& set, const std::vector<Entrant>& entrants,
+             const Peer& peer, unsigned threads, Results& results);
+
+}  // namespace raygrain::bench

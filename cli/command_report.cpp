@@ -1,0 +1,132 @@
+// raygrain report: result files of studies as one page of charts, and as Markdown with pictures.
+#include <filesystem>
+#include <memory>
+#include <ostream>
+
+#include <fmt/format.h>
+
+#include "raygrain/error.h"
+#include "raygrain/io.h"
+#include "raygrain/study_report.h"
+
+#include "cli/commands.h"
+#include "cli/output.h"
+#include "cli/progress.h"
+#include "cli/values.h"
+#include "io/text.h"
+
+namespace raygrain::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  CommonOptions common;
+  std::vector<std::string> results;
+  std::string page, markdown, page_template;
+  bool plain = false;
+};
+
+/// A folder stands for the results.csv in it.
+std::string results_file(const std::string& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored) ? (fs::path(path) / "results.csv").string() : path;
+}
+
+/// The interactive page as it is built or installed: PREFIX/share/raygrain beside PREFIX/bin. Empty where there is
+/// none.
+std::string installed_template() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  if (error) return {};
+  const fs::path page = program.parent_path().parent_path() / "share/raygrain/report-page.html";
+  return fs::exists(page, error) ? page.string() : std::string{};
+}
+
+void save(const std::string& path, const std::string& text) {
+  write_file_atomically(path, [&](std::ostream& out) { out << text; });
+}
+
+/// The page, and what to tell of it.
+std::string make_page(const Options& options, const StudyReport& report) {
+  constexpr const char* kNote =
+      "Static charts. `make report-page` builds the interactive page (it needs node and npm); `raygrain report` then "
+      "fills it instead.";
+  const std::string path = options.page_template.empty() ? installed_template() : options.page_template;
+  if (options.plain || path.empty()) {
+    save(options.page, static_page(report, kNote));
+    return options.plain ? ""
+                         : "The interactive page is not built: these charts are static. make report-page builds it.\n";
+  }
+  save(options.page, interactive_page(report, read_whole_file(path), path));
+  return {};
+}
+
+/// The Markdown file, and its pictures in a folder of the same name.
+void make_markdown(const Options& options, const StudyReport& report, Progress& progress) {
+  const fs::path path(options.markdown);
+  const std::string folder = path.stem().string() + "-charts";
+  const fs::path pictures = path.parent_path() / folder;
+  make_output_folder(pictures.string());
+  const auto picture = [&](const Chart& chart, size_t panel) {
+    const std::string name = fmt::format("{}-{}.png", chart.id, panel + 1);
+    progress.show("draw " + name, 0.5);
+    save_png(chart_image(chart.panels[panel]), (pictures / name).string());
+    return folder + "/" + name;
+  };
+  save(options.markdown, report_markdown(report, picture));
+}
+
+/// Figure by figure, one line each: what came out.
+std::string summary(const StudyReport& report) {
+  std::string text;
+  for (const ChartSection& section : report.sections) {
+    text += section.title + "\n";
+    for (const Chart& chart : section.charts)
+      text += fmt::format("  {} [{}] {}\n", chart.label.empty() ? chart.title : chart.label, name(chart.verdict),
+                          chart.finding);
+  }
+  return text;
+}
+
+int make_report(const Options& options) {
+  if (options.page.empty() && options.markdown.empty() && options.common.json.empty())
+    fail_usage("raygrain report", "has nothing to write", "Give --out report.html, --markdown FILE or --json FILE");
+  const Output output(options.common);
+  require_writable(options.page);
+  require_writable(options.markdown);
+  std::vector<ResultTable> tables;
+  for (const std::string& path : options.results) tables.push_back(load_results(results_file(path)));
+  const StudyReport report = make_study_report(tables);
+
+  Progress progress(!options.common.quiet);
+  std::string note;
+  if (!options.page.empty()) note = make_page(options, report);
+  if (!options.markdown.empty()) make_markdown(options, report, progress);
+  progress.erase();
+  output.save_json(study_report_json(report) + "\n");
+  output.print(summary(report));
+  output.note(note.empty() ? "" : "\n" + note);
+  for (const std::string& path : {options.page, options.markdown})
+    if (!path.empty()) output.note("\nWritten: " + path + "\n");
+  return kSuccess;
+}
+
+}  // namespace
+
+Action declare_report(Arguments& arguments) {
+  const auto options = std::make_shared<Options>();
+  arguments.operands("RESULTS", options->results,
+                     "results.csv files of studies, folders that hold one, or compare.csv files");
+  arguments.file("--out", "report.html", options->page, "Write the report as one self-contained page");
+  arguments.file("--markdown", "FILE", options->markdown,
+                 "Write it as Markdown, too, with PNG charts in a folder beside the file");
+  arguments.flag("--static", options->plain, "Make the page without scripts: SVG charts only");
+  arguments.file("--template", "FILE", options->page_template,
+                 "The built interactive page to fill [the one beside the program]");
+  add_common(arguments, options->common);
+  return [options] { return make_report(*options); };
+}
+
+}  // namespace raygrain::cli

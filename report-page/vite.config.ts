@@ -1,0 +1,8 @@
+// One HTML file with everything in it: `raygrain report` puts its data where index.html says.
+import { defineConfig } from 'vite';
+import { viteSingleFile } from 'vite-plugin-singlefile';
+
+export default defineConfig({
+  plugins: [viteSingleFile({ removeViteModuleLoader: true })],
+  build: { target: 'es2022', chunkSizeWarningLimit: 2000, reportCompressedSize: false },
+});

@@ -1,0 +1,138 @@
+// Rays that share a direction or a point: to the coverage of the areas that have it, what is left ray by ray.
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include "raygrain/accelerator.h"
+#include "raygrain/error.h"
+
+#include "base/parallel.h"
+
+namespace raygrain {
+
+namespace {
+
+void check_sizes(size_t rays, size_t answers) {
+  if (rays != answers)
+    throw Error(ErrorCode::kUsage, "Accelerator",
+                std::to_string(rays) + " rays and room for " + std::to_string(answers) + " answers");
+}
+
+/// Rays of which some still wait for their answer.
+class Waiting {
+ public:
+  explicit Waiting(size_t count) : count_(count) {}
+
+  bool is_empty() const { return count_ == 0 || (started_ && numbers_.empty()); }
+
+  /// Lets ask(numbers, rest) answer those that wait (no numbers: all of them), and keeps the rest.
+  template <class Ask>
+  void offer(const Ask& ask) {
+    std::vector<uint32_t> rest;
+    ask(std::span<const uint32_t>(numbers_), rest);
+    numbers_ = std::move(rest);
+    started_ = true;
+  }
+
+  /// The last resort: rays of any kind. trace(rays, answers) answers an array.
+  template <class Answer, class MakeRay, class Trace>
+  void trace_rest(std::span<Answer> answers, unsigned threads, const MakeRay& make_ray, const Trace& trace) const {
+    constexpr size_t kChunk = 2048;
+    const size_t left = started_ ? numbers_.size() : count_;
+    parallel_for(left, kChunk, threads, [&](size_t begin, size_t end) {
+      std::vector<Ray> rays(end - begin);
+      for (size_t i = 0; i < rays.size(); ++i) rays[i] = make_ray(number(begin + i));
+      if (!started_) return trace(rays, answers.subspan(begin, rays.size()));
+      std::vector<Answer> found(rays.size());
+      trace(rays, found);
+      for (size_t i = 0; i < rays.size(); ++i) answers[number(begin + i)] = found[i];
+    });
+  }
+
+ private:
+  size_t number(size_t i) const { return started_ ? numbers_[i] : i; }
+
+  size_t count_;
+  bool started_ = false;
+  std::vector<uint32_t> numbers_;
+};
+
+}  // namespace
+
+void Accelerator::occluded(std::span<const Vec3> origins, Vec3 direction, std::span<uint8_t> flags,
+                           unsigned threads) const {
+  check_sizes(origins.size(), flags.size());
+  Waiting waiting(origins.size());
+  for (const Coverage& coverage : coverages()) {
+    if (waiting.is_empty()) return;
+    if (coverage.sense(direction) == 1)
+      waiting.offer([&](std::span<const uint32_t> numbers, std::vector<uint32_t>& rest) {
+        coverage.occluded(origins, direction, flags, rest, numbers, threads);
+      });
+  }
+  waiting.trace_rest(
+      flags, threads,
+      [&](size_t i) {
+        return Ray{origins[i], direction, 0, kInf};
+      },
+      [&](std::span<const Ray> rays, std::span<uint8_t> found) { occluded(rays, found); });
+}
+
+void Accelerator::intersect(std::span<const Vec3> origins, Vec3 direction, std::span<Hit> hits,
+                            unsigned threads) const {
+  check_sizes(origins.size(), hits.size());
+  Waiting waiting(origins.size());
+  for (const Coverage& coverage : coverages()) {
+    if (waiting.is_empty()) return;
+    if (coverage.sense(direction) == -1)
+      waiting.offer([&](std::span<const uint32_t> numbers, std::vector<uint32_t>& rest) {
+        coverage.intersect(origins, direction, hits, rest, numbers, threads);
+      });
+  }
+  waiting.trace_rest(
+      hits, threads,
+      [&](size_t i) {
+        return Ray{origins[i], direction, 0, kInf};
+      },
+      [&](std::span<const Ray> rays, std::span<Hit> found) { intersect(rays, found); });
+}
+
+void Accelerator::occluded_towards(std::span<const Vec3> origins, Vec3 point, std::span<uint8_t> flags,
+                                   unsigned threads) const {
+  check_sizes(origins.size(), flags.size());
+  Waiting waiting(origins.size());
+  for (const Coverage& coverage : coverages()) {
+    if (waiting.is_empty()) return;
+    if (coverage.has_eye(point))
+      waiting.offer([&](std::span<const uint32_t> numbers, std::vector<uint32_t>& rest) {
+        coverage.occluded_towards(origins, point, flags, rest, numbers, threads);
+      });
+  }
+  waiting.trace_rest(
+      flags, threads,
+      [&](size_t i) {
+        return Ray{origins[i], point - origins[i], 0, 1};
+      },
+      [&](std::span<const Ray> rays, std::span<uint8_t> found) { occluded(rays, found); });
+}
+
+void Accelerator::intersect_from(Vec3 eye, std::span<const Vec3> directions, std::span<Hit> hits,
+                                 unsigned threads) const {
+  check_sizes(directions.size(), hits.size());
+  Waiting waiting(directions.size());
+  for (const Coverage& coverage : coverages()) {
+    if (waiting.is_empty()) return;
+    if (coverage.has_eye(eye))
+      waiting.offer([&](std::span<const uint32_t> numbers, std::vector<uint32_t>& rest) {
+        coverage.intersect_from(eye, directions, hits, rest, numbers, threads);
+      });
+  }
+  waiting.trace_rest(
+      hits, threads,
+      [&](size_t i) {
+        return Ray{eye, directions[i], 0, kInf};
+      },
+      [&](std::span<const Ray> rays, std::span<Hit> found) { intersect(rays, found); });
+}
+
+}  // namespace raygrain

@@ -1,0 +1,120 @@
+// Figures 20 and 22 of the paper: overlap of siblings, and what it costs.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "report/charts.h"
+#include "report/published.h"
+
+namespace raygrain {
+
+namespace {
+
+constexpr std::string_view kFull = "PAH+SPFH";
+constexpr const char* kOverlapColumn = "overlap4_culled";
+
+std::vector<std::pair<double, double>> pairs_of(std::span<const ResultRow> rows, const char* x, const char* y) {
+  std::vector<std::pair<double, double>> points;
+  for (const ResultRow& row : rows)
+    if (!std::isnan(row.number(x)) && !std::isnan(row.number(y))) points.emplace_back(row.number(x), row.number(y));
+  return points;
+}
+
+ChartPanel scatter(const StudyResults& study, const std::string& title, const std::string& axis, const char* column) {
+  ChartPanel panel{.title = title,
+                   .kind = ChartKind::kPoints,
+                   .x = {"overlap of siblings, levels 0 to 4, culled"},
+                   .y = {axis, true}};
+  std::vector<std::string> recipes;
+  for (const ResultRow& row : study.rows) {
+    const double x = row.number(kOverlapColumn), y = row.number(column);
+    if (std::isnan(x) || !(y > 0)) continue;
+    panel.measured.push_back({.series = row.recipe, .x = x, .y = y, .label = row.scene + ", " + group_label(row)});
+  }
+  panel.series = coloured(recipe_names(study.rows));
+  return panel;
+}
+
+}  // namespace
+
+Chart overlap_cost_figure(const StudyResults& study) {
+  Chart chart{.label = "Figure 20", .title = "Cost against overlap of siblings"};
+  chart.verdict = Verdict::kMissing;
+  const std::vector<ResultRow> full = rows_of_recipe(study.rows, kFull);
+  const double real = correlation(pairs_of(full, kOverlapColumn, "real_cost"));
+  const double pruned = correlation(pairs_of(full, kOverlapColumn, "pruned_cost"));
+  if (std::isnan(real)) return chart;
+  if (!std::isnan(pruned))
+    chart.panels.push_back(
+        scatter(study, "What users pay: pruned cost against overlap", "pruned cost per ray", "pruned_cost"));
+  chart.panels.push_back(scatter(study, "As in the paper: full-traversal cost against overlap",
+                                 "real cost per ray, full traversal", "real_cost"));
+  chart.verdict = real > 0.2 ? Verdict::kConfirms : real > 0 ? Verdict::kPartly : Verdict::kContradicts;
+  chart.finding = fmt::format(
+      "Over {} tests of {} the full-traversal cost has a correlation of {:.2f} with the overlap of siblings, where the "
+      "published tests have {:.2f}; the pruned cost, which users pay, has {}.",
+      pairs_of(full, kOverlapColumn, "real_cost").size(), kFull, real, kOverlapCorrelation,
+      std::isnan(pruned) ? "not been measured" : fmt::format("{:.2f}", pruned));
+  chart.notes.emplace_back("Of the paper's own points only the picture is published.");
+  return chart;
+}
+
+Chart overlap_figure(const StudyResults& study) {
+  Chart chart{.label = "Figure 22", .title = "Overlap of siblings in the top levels"};
+  chart.verdict = Verdict::kMissing;
+  std::vector<std::string> recipes{std::string(kFull), std::string(kBaseline)};
+  for (const std::string& own : own_recipes(study))
+    if (recipes.size() < 6) recipes.push_back(own);
+  const RowValue overlap = column_value(kOverlapColumn);
+  const double full = mean_of(rows_of_recipe(study.rows, kFull), overlap),
+               standard = mean_of(rows_of_recipe(study.rows, kBaseline), overlap);
+  if (std::isnan(full) || std::isnan(standard)) return chart;
+
+  chart.panels = user_bars(study.rows, recipes);
+  ChartPanel panel = group_bars(study.rows, recipes, "As in the paper: overlap, levels 0 to 4, culled",
+                                "mean common area per smaller sibling's area", overlap);
+  const auto add = [&](std::string_view series, const PaperValues& raw, const PaperValues& printed) {
+    std::vector<ChartPoint> points = published_points(series, raw, "");
+    for (size_t i = 0; i < points.size(); ++i)
+      points[i].label = fmt::format("authors' raw results; printed: {:.3f}", printed[i]);
+    panel.published.insert(panel.published.end(), points.begin(), points.end());
+  };
+  add(kFull, kOverlapOfFull, kPrintedOverlapOfFull);
+  add(kBaseline, kOverlapOfStandard, kPrintedOverlapOfStandard);
+
+  size_t groups = 0, less = 0;
+  double least = kNotMeasured;
+  std::string least_group;
+  for (const std::string& group : panel.groups) {
+    const auto here = [&](std::string_view recipe) {
+      return mean_of(
+          filtered(study.rows, [&](const ResultRow& r) { return r.recipe == recipe && group_label(r) == group; }),
+          overlap);
+    };
+    const double difference = here(kFull) - here(kBaseline);
+    if (std::isnan(difference)) continue;
+    ++groups;
+    less += difference < 0;
+    if (!(difference >= least)) {
+      least = difference;
+      least_group = group;
+    }
+  }
+  chart.panels.push_back(std::move(panel));
+  // Two statements: less overlap on average, and least of all where rays are parallel to an axis.
+  const bool on_average = full < standard, parallel = least_group.ends_with("parallel");
+  chart.verdict = verdict_of(size_t{on_average} + size_t{parallel}, 2);
+  const std::string users = user_sentence(study, std::string(kFull), std::string(kBaseline));
+  chart.finding = fmt::format(
+      "Siblings overlap by {} in trees of {} and by {} in those of {} (paper: 59 % and 66 %), less in {} of {} groups "
+      "and "
+      "most of all for {}{}.",
+      percent(full), kFull, percent(standard), kBaseline, less, groups, least_group, users.empty() ? "" : "; " + users);
+  chart.notes.emplace_back(
+      "Published marks are means of the authors' raw results; the printed figure differs from them by up to 10 % and "
+      "is "
+      "given with each mark.");
+  return chart;
+}
+
+}  // namespace raygrain

@@ -1,0 +1,138 @@
+// A finer grid than the paper's table 2: its three thresholds, the bins, and the levels that use the primary
+// heuristics.
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "raygrain/build.h"
+
+#include "report/charts.h"
+
+namespace raygrain {
+
+namespace {
+
+bool is(const ResultRow& row, const char* column, double value) {
+  return std::abs(row.number(column) - value) < 1e-6;
+}
+
+bool has_default_thresholds(const ResultRow& row) {
+  return is(row, "split_plane_quality_threshold", 0.4) && is(row, "acceptable_ratio", 1.3) &&
+         is(row, "excellent_ratio", 0.9);
+}
+bool has_default_bins(const ResultRow& row) {
+  return is(row, "bins", PaperParameters{}.bins);
+}
+bool has_default_levels(const ResultRow& row) {
+  return is(row, "max_non_fallback_levels", PaperParameters{}.max_non_fallback_levels);
+}
+
+struct Metric {
+  const char* title;
+  const char* series;
+  RowValue value;
+};
+std::vector<Metric> metrics() {
+  return {{"What users pay: pruned cost", "pruned cost", column_value("pruned_cost")},
+          {"What users pay: time", "time per ray", nanoseconds_per_ray},
+          {"As in the paper: full-traversal cost", "full-traversal cost", column_value("real_cost")},
+          {"What building costs: time", "build time", column_value("build_seconds")}};
+}
+
+constexpr const char* kAxis = "multiple of the paper's parameters, geometric mean";
+
+/// The recipe with the paper's own parameters: what all others are compared with, test by test.
+std::string default_recipe(const StudyResults& study) {
+  for (const ResultRow& row : study.rows)
+    if (has_default_thresholds(row) && has_default_bins(row) && has_default_levels(row)) return row.recipe;
+  return {};
+}
+
+ChartPoint ratio_point(const std::string& series, double x, const PairedRatio& ratio) {
+  return {.series = series, .x = x, .y = ratio.mean, .low = ratio.low, .high = ratio.high, .count = ratio.count};
+}
+
+/// The three thresholds, each with each: a panel per metric, a line per pair of ratios.
+Chart threshold_chart(const StudyResults& study, const std::string& baseline) {
+  Chart chart{.title = "The three thresholds, each with each"};
+  const std::vector<ResultRow> rows =
+      filtered(study.rows, [](const ResultRow& row) { return has_default_bins(row) && has_default_levels(row); });
+  const auto pair = [](const ResultRow& row) {
+    return fmt::format("acceptable {}, excellent {}", short_number(row.number("acceptable_ratio")),
+                       short_number(row.number("excellent_ratio")));
+  };
+  double best = kNotMeasured;
+  for (const Metric& metric : metrics()) {
+    if (!any_measured(rows, metric.value)) continue;
+    ChartPanel panel{.title = metric.title,
+                     .kind = ChartKind::kLines,
+                     .x = {"split plane quality threshold"},
+                     .y = {kAxis},
+                     .reference = 1};
+    panel.series = coloured(distinct(rows, pair));
+    for (const std::string& recipe : distinct(rows, [](const ResultRow& row) { return row.recipe; })) {
+      const std::vector<ResultRow> own = rows_of_recipe(rows, recipe);
+      const PairedRatio ratio = paired_ratio(rows, recipe, baseline, metric.value);
+      panel.measured.push_back(
+          ratio_point(pair(own.front()), own.front().number("split_plane_quality_threshold"), ratio));
+      if (chart.panels.empty() && !(ratio.mean >= best)) {
+        best = ratio.mean;
+        chart.finding = fmt::format(
+            "Users pay least with quality {}, {}: {} times the pruned cost of the paper's parameters over {} tests.",
+            short_number(own.front().number("split_plane_quality_threshold")), pair(own.front()),
+            short_number(ratio.mean), ratio.count);
+      }
+    }
+    chart.panels.push_back(std::move(panel));
+  }
+  return chart;
+}
+
+/// One parameter alone: all metrics in one panel.
+Chart single_chart(std::span<const ResultRow> rows, const std::string& baseline, const char* title,
+                   const char* column) {
+  Chart chart{.title = title};
+  ChartPanel panel{.title = "Pruned cost and time first; the paper's full-traversal cost beside them",
+                   .kind = ChartKind::kLines,
+                   .x = {title},
+                   .y = {kAxis},
+                   .reference = 1};
+  const std::vector<std::string> recipes = distinct(rows, [](const ResultRow& row) { return row.recipe; });
+  if (recipes.size() < 3) return chart;
+  std::vector<std::string> names;
+  double best = kNotMeasured;
+  for (const Metric& metric : metrics()) {
+    if (!any_measured(rows, metric.value)) continue;
+    names.emplace_back(metric.series);
+    for (const std::string& recipe : recipes) {
+      const PairedRatio ratio = paired_ratio(rows, recipe, baseline, metric.value);
+      const double x = rows_of_recipe(rows, recipe).front().number(column);
+      if (ratio.count == 0) continue;
+      panel.measured.push_back(ratio_point(metric.series, x, ratio));
+      if (names.size() > 1 || ratio.mean >= best) continue;
+      best = ratio.mean;
+      chart.finding = fmt::format("The {} is lowest with {}: {} times that of the paper's parameters over {} tests.",
+                                  metric.series, short_number(x), short_number(ratio.mean), ratio.count);
+    }
+  }
+  panel.series = coloured(names);
+  chart.panels.push_back(std::move(panel));
+  return chart;
+}
+
+}  // namespace
+
+std::vector<Chart> parameter_charts(const StudyResults& study) {
+  const std::string baseline = default_recipe(study);
+  const std::vector<ResultRow> bins =
+      filtered(study.rows, [](const ResultRow& row) { return has_default_thresholds(row) && has_default_levels(row); });
+  const std::vector<ResultRow> levels =
+      filtered(study.rows, [](const ResultRow& row) { return has_default_thresholds(row) && has_default_bins(row); });
+  std::vector<Chart> charts{
+      threshold_chart(study, baseline), single_chart(bins, baseline, "Slices per axis (bins)", "bins"),
+      single_chart(levels, baseline, "Levels that use PAH and SPFH (maxNonFallbackLevels)", "max_non_fallback_levels")};
+  std::erase_if(charts, [](const Chart& chart) { return chart.panels.empty(); });
+  return charts;
+}
+
+}  // namespace raygrain

@@ -1,0 +1,132 @@
+#include "raygrain/study_report.h"
+
+#include <algorithm>
+#include <array>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "raygrain/error.h"
+
+#include "report/charts.h"
+
+namespace raygrain {
+
+namespace {
+
+struct KnownStudy {
+  std::string_view name, title, text;
+};
+/// In the order of the report.
+constexpr std::array<KnownStudy, 8> kKnownStudies{{
+    {"published", "The published evaluation",
+     "The paper's tests with the rules of the authors' own program, quirks included: costs are to match the published "
+     "ones."},
+    {"paper", "The paper's evaluation, sound",
+     "The same tests as the paper describes them: the best split is kept, one measure judges it, membership is exact."},
+    {"corrected", "Corrected and extended",
+     "Equal thresholds, all axes, matched rays, other builders and measures: what really pays."},
+    {"parameters", "Parameters", "The three thresholds of table 2 and a finer grid, bins and levels."},
+    {"areas", "Many areas", "Lists and octrees over 1 to 256 influence areas."},
+    {"memory", "Memory", "Section 9.6 of the paper, measured."},
+    {"scaling", "Scaling", "From a thousand to millions of triangles."},
+    {"stress", "Stress", "Several areas at once, rays that no area knows, hit ratios at which an area pays."},
+}};
+
+const KnownStudy* known_study(std::string_view name) {
+  const auto found =
+      std::find_if(kKnownStudies.begin(), kKnownStudies.end(), [&](const KnownStudy& s) { return s.name == name; });
+  return found == kKnownStudies.end() ? nullptr : &*found;
+}
+
+std::ptrdiff_t rank(std::string_view name) {
+  const KnownStudy* known = known_study(name);
+  return known ? known - kKnownStudies.data() : static_cast<std::ptrdiff_t>(kKnownStudies.size());
+}
+
+/// Studies in the order of the report, with ids that differ.
+std::vector<StudyResults> make_studies(std::span<const ResultTable> tables) {
+  std::vector<StudyResults> studies;
+  for (const ResultTable& table : tables) studies.push_back({table.study, id_of(table.study), study_rows(table)});
+  std::stable_sort(studies.begin(), studies.end(),
+                   [](const StudyResults& a, const StudyResults& b) { return rank(a.name) < rank(b.name); });
+  std::set<std::string> used;
+  for (StudyResults& study : studies)
+    for (const std::string id = study.id; !used.insert(study.id).second;)
+      study.id = id + "-" + std::to_string(used.size());
+  return studies;
+}
+
+void append(std::vector<Chart>& charts, std::vector<Chart> more) {
+  std::move(more.begin(), more.end(), std::back_inserter(charts));
+}
+
+std::vector<Chart> paper_charts(const StudyResults& study) {
+  std::vector<Chart> charts{prediction_figure(study)};
+  append(charts, cost_figures(study));
+  charts.push_back(split_time_figure(study));
+  charts.push_back(overlap_cost_figure(study));
+  charts.push_back(overlap_figure(study));
+  return charts;
+}
+
+std::vector<Chart> charts_of(const StudyResults& study) {
+  std::vector<Chart> charts;
+  for (const auto make : {area_charts, memory_charts, stress_charts}) append(charts, make(study));
+  if (!charts.empty()) return charts;  // rows of these studies are no trees
+
+  if (study.name != "corrected" && has_paper_tests(study))
+    append(charts, paper_charts({study.name, study.id, main_rays(study.rows)}));
+  if (Chart tuning = tuning_table(study); tuning.verdict != Verdict::kMissing) {
+    charts.push_back(std::move(tuning));
+    append(charts, parameter_charts(study));
+  } else {
+    append(charts, scaling_charts(study));
+    append(charts, recipe_charts(study));
+  }
+  return charts;
+}
+
+ChartSection section_of(const StudyResults& study) {
+  const KnownStudy* known = known_study(study.name);
+  ChartSection section{study.id, known ? std::string(known->title) : study.name, known ? std::string(known->text) : "",
+                       charts_of(study)};
+  std::erase_if(section.charts, [](const Chart& chart) { return chart.panels.empty() && chart.table.rows.empty(); });
+  for (Chart& chart : section.charts)
+    chart.id = study.id + "-" + id_of(chart.label.empty() ? chart.title : chart.label);
+  return section;
+}
+
+/// Values of a column over all rows, each once.
+std::string values_of(const StudyResults& study, std::string_view column) {
+  std::string text;
+  for (const std::string& value :
+       distinct(study.rows, [&](const ResultRow& row) { return std::string(row.text(column)); }))
+    if (!value.empty()) text += (text.empty() ? "" : ", ") + value;
+  return text;
+}
+
+void add_facts(StudyReport& report, const StudyResults& study) {
+  std::string text = fmt::format("{} row{}", study.rows.size(), study.rows.size() == 1 ? "" : "s");
+  for (const char* column : {"scene", "commit", "compiler", "cpu", "isa", "threads", "seed", "rays"})
+    if (const std::string values = values_of(study, column); !values.empty())
+      text += fmt::format("; {}: {}", column, values);
+  report.facts.emplace_back(study.name, text);
+}
+
+}  // namespace
+
+StudyReport make_study_report(std::span<const ResultTable> tables) {
+  if (tables.empty()) throw Error(ErrorCode::kUsage, "report", "needs a results file", "Run raygrain study first");
+  StudyReport report;
+  report.title = "raygrain: what trees for known rays cost";
+  for (const StudyResults& study : make_studies(tables)) {
+    add_facts(report, study);
+    report.sections.push_back(section_of(study));
+  }
+  std::vector<Chart>& first = report.sections.front().charts;
+  first.insert(first.begin(), parameter_table());
+  return report;
+}
+
+}  // namespace raygrain

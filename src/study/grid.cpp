@@ -1,0 +1,134 @@
+// Grids of trees as studies.
+#include <algorithm>
+#include <set>
+
+#include "raygrain/analyze.h"
+#include "raygrain/compare.h"
+#include "raygrain/error.h"
+#include "raygrain/refine.h"
+#include "raygrain/study.h"
+
+#include "study/scene_pool.h"
+#include "study/tree_row.h"
+
+namespace raygrain {
+
+namespace study {
+
+SceneTrees make_scene_trees(TriangleMesh mesh, Bvh global) {
+  SceneTrees trees{std::move(mesh), std::move(global), {}};
+  trees.wide_global = WideBvh(trees.global, trees.mesh);
+  return trees;
+}
+
+}  // namespace study
+
+namespace {
+
+using study::Cells;
+using study::LazyScene;
+using study::SceneTrees;
+
+/// One row to be, with its own copies of what it is about.
+struct GridRow {
+  std::shared_ptr<const StudyGrid> grid;
+  std::shared_ptr<LazyScene> scene;
+  StudyArea area;
+  StudyRecipe recipe;
+  StudyRays rays;
+  uint64_t seed = 1;
+
+  std::vector<std::string> run() const;
+
+ private:
+  LocalTree build(const SceneTrees& trees, std::span<const Ray> samples, const RayMeasure& own) const;
+};
+
+LocalTree GridRow::build(const SceneTrees& trees, std::span<const Ray> samples, const RayMeasure& own) const {
+  LocalTree local = build_local_tree(trees.mesh, area.area, recipe.recipe, grid->registry, {}, samples);
+  if (!recipe.reinsert) return local;
+  Bvh tree = *local.tree;
+  raygrain::reinsert(tree, own, {.threads = 1, .costs = grid->costs});
+  local.tree = std::make_shared<const Bvh>(std::move(tree));
+  return local;
+}
+
+std::vector<std::string> GridRow::run() const {
+  static const std::vector<StudyColumn> columns = grid_columns();
+  const SceneTrees& trees = scene->get();
+  const AreaGeometry geometry(area.area);
+  const std::vector<Ray> samples =
+      needs_samples(recipe.recipe, grid->registry) ? sample_rays(area.area, seed) : std::vector<Ray>{};
+  const BuildOptions options = make_build_options(recipe.recipe, grid->registry, {&area.area, samples});
+  const LocalTree local = build(trees, samples, options.strategy.measure);
+  const std::vector<Ray> cast = cast_rays(AreaRays{.area = area.area, .spread = rays.spread}, rays.count, seed);
+  Cells cells(columns);
+  study::set_recipe_cells(cells, recipe.recipe, options);
+  study::set_tree_cells(cells, study::exact_test(trees, local, geometry, cast, grid->costs), options.strategy.measure);
+  return cells.take();
+}
+
+void require(bool good, const StudyGrid& grid, const char* what) {
+  if (!good) throw Error(ErrorCode::kUsage, grid.name, std::string("has no ") + what, "A grid needs at least one");
+}
+
+void check_grid(const StudyGrid& grid) {
+  require(!grid.scenes.empty(), grid, "scenes");
+  require(!grid.recipes.empty(), grid, "recipes");
+  require(!grid.rays.empty(), grid, "ray sets");
+  require(!grid.seeds.empty(), grid, "seeds");
+  require(grid.repeats > 0, grid, "repeats");
+  for (const StudyRays& rays : grid.rays)
+    if (rays.count == 0) throw Error(ErrorCode::kUsage, grid.name + ": rays " + rays.name, "must be at least 1");
+  for (const StudyScene& scene : grid.scenes)
+    for (const StudyArea& area : scene.areas) validate(area.area, scene.name + ' ' + area.variant);
+}
+
+/// What decides the numbers and stands in no key.
+std::string identity_of(const StudyGrid& grid) {
+  std::string text = "global " + recipe_name(grid.global);
+  for (const StudyRays& rays : grid.rays) text += ", " + rays.name + ' ' + std::to_string(rays.count);
+  return text;
+}
+
+/// Area and heuristics must fit each other before anything runs.
+void check_recipe(const StudyGrid& grid, const StudyArea& area, const StudyRecipe& recipe) {
+  const std::vector<Ray> one(1);
+  make_build_options(recipe.recipe, grid.registry, {&area.area, one});
+}
+
+}  // namespace
+
+Study make_study(const StudyGrid& given) {
+  check_grid(given);
+  const auto grid = std::make_shared<const StudyGrid>(given);
+  Study study{grid->name, grid_columns(), {}, identity_of(*grid), grid->missing};
+  for (const StudyScene& scene : grid->scenes) {
+    const auto lazy = std::make_shared<LazyScene>([grid, load = scene.load] {
+      TriangleMesh mesh = load();
+      Bvh global = build_global_tree(mesh, grid->global, grid->registry);
+      return study::make_scene_trees(std::move(mesh), std::move(global));
+    });
+    for (const StudyArea& area : scene.areas) {
+      const char* kind = std::holds_alternative<PlaneArea>(area.area.shape) ? "plane" : "point";
+      for (const StudyRecipe& recipe : grid->recipes) {
+        bool checked = false;
+        for (const StudyRays& rays : grid->rays) {
+          if (grid->leave_out && grid->leave_out(scene, area, recipe, rays)) continue;
+          if (!checked) check_recipe(*grid, area, recipe);
+          checked = true;
+          for (const uint64_t seed : grid->seeds)
+            for (uint64_t repeat = 1; repeat <= grid->repeats; ++repeat) {
+              const GridRow row{grid, lazy, area, recipe, rays, seed};
+              study.add(
+                  {scene.name, kind, area.variant, recipe.combo, recipe.setting, rays.name, seed, repeat},
+                  [row] { return row.run(); }, scene.weight);
+            }
+        }
+      }
+    }
+  }
+  return study;
+}
+
+}  // namespace raygrain

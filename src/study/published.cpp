@@ -1,0 +1,305 @@
+// The 256 tests with the rules of the program that made the published numbers of "Ray Distribution Aware Heuristics for
+// Bounding Volume Hierarchies Construction in Ray Tracing" (2024). Everything in which that program differs from the
+// paper's text, or from what is right, stands in this file and uses public injection points only: it is also the proof
+// that they reach far enough. The study `paper` runs the same tests as they should be.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "raygrain/build.h"
+#include "raygrain/heuristics.h"
+#include "raygrain/top_level.h"
+
+#include "base/trigonometry.h"
+#include "study/presets.h"
+#include "study/scene_pool.h"
+#include "study/sources.h"
+#include "study/tree_row.h"
+
+namespace raygrain::study {
+namespace {
+
+// One constant of that program served as every tolerance.
+constexpr float kTolerance = 0.01f;
+constexpr uint32_t kOctreeLevel = 5;
+
+/// A combination as published. The point tests that were printed as PAH+LSPH had been made with another recipe; both
+/// are run.
+struct Combo {
+  const char* name;
+  bool pah, spfh;
+  float threshold;      // of a split plane's quality; the paper lists 0.4 only
+  bool second_section;  // second of the two sections of its run: decides the rays
+  bool mislabelled;
+};
+constexpr std::array<Combo, 5> kCombos{{{"PAH+SPFH", true, true, 0.4f, false, false},
+                                        {"PAH+LSPH", true, false, 0.99f, false, false},
+                                        {"SAH+SPFH", false, true, 0.4f, true, false},
+                                        {"SAH+LSPH", false, false, 0.99f, true, false},
+                                        {"PAH+LSPH-as-published", false, true, 0.99f, false, true}}};
+constexpr Combo kGlobal{"", false, false, 0.4f, false, false};
+
+// --- Rays: the engine that made the random scenes went on to draw the rays, test by test. ---
+
+constexpr uint64_t kSceneDraws = uint64_t{100 + 1000} * 9 * 2;  // two random scenes, nine doubles a triangle
+constexpr uint64_t kPlaneDraws = 3 * 2, kPointDraws = 2 * 2;    // a ray: depth (unused), x, y; or yaw, pitch
+constexpr uint64_t kTestsPerSection = 7 * 4;                    // Sponza had runs of its own
+
+double draw(std::mt19937& engine, double half) {
+  const double low = static_cast<double>(engine()), high = static_cast<double>(engine());
+  return ((low + high * 0x1p32) * 0x1p-64 * 2 - 1) * half;
+}
+
+/// Where the rays of a test begin in the order of its run.
+uint64_t draws_before(const StudyArea& area, const std::string& scene, bool second_section, size_t rays) {
+  constexpr std::array kScenes{"Wood", "Suzanne", "Cottage", "CottageWalls", "Crowd", "Random100", "Random1000"};
+  constexpr std::array kVariants{"parallel", "15deg", "45deg", "oblique"};
+  const auto scene_index = std::find(kScenes.begin(), kScenes.end(), scene) - kScenes.begin();
+  const auto variant = std::find(kVariants.begin(), kVariants.end(), area.variant) - kVariants.begin();
+  const bool alone = scene == "Sponza";
+  const uint64_t test = (alone ? 0 : static_cast<uint64_t>(scene_index) * 4) + static_cast<uint64_t>(variant) +
+                        (second_section ? (alone ? 4 : kTestsPerSection) : 0);
+  const bool is_plane = std::holds_alternative<PlaneArea>(area.area.shape);
+  return kSceneDraws + test * rays * (is_plane ? kPlaneDraws : kPointDraws);
+}
+
+/// Not uniform on the near plane: uniform in yaw and pitch, so that up to a fifth leave the frustum.
+Ray draw_ray(std::mt19937& engine, const PointArea& area, const Frame& frame) {
+  const SineCosine yaw = sine_cosine(draw(engine, radians(static_cast<double>(area.fov_x) / 2)));
+  const SineCosine pitch = sine_cosine(draw(engine, radians(static_cast<double>(area.fov_y) / 2)));
+  const Vec3d direction{yaw.sine * pitch.cosine, -pitch.sine, yaw.cosine * pitch.cosine};
+  const Vec3d origin = direction * (static_cast<double>(area.near_z) / direction.z);
+  return {to_float(to_world(frame, origin)), to_float(to_world_direction(frame, direction))};
+}
+
+Ray draw_ray(std::mt19937& engine, const PlaneArea& area, const Frame& frame) {
+  engine.discard(2);
+  const double x = draw(engine, static_cast<double>(area.half_width));
+  const double y = draw(engine, static_cast<double>(area.half_height));
+  return {to_float(to_world(frame, {x, y, 0})), to_float(frame.forward)};
+}
+
+std::vector<Ray> draw_rays(const StudyArea& area, const Frame& frame, uint64_t before, size_t count, uint64_t seed) {
+  std::mt19937 engine(static_cast<uint32_t>(seed));
+  engine.discard(before);
+  std::vector<Ray> rays;
+  for (size_t i = 0; i < count; ++i)
+    rays.push_back(std::visit([&](const auto& shape) { return draw_ray(engine, shape, frame); }, area.area.shape));
+  return rays;
+}
+
+// --- Membership: by cells of the octree, with tolerance; by vertices alone. ---
+
+class Octree {
+ public:
+  explicit Octree(const ConvexRegion& region) : cells_(std::array{region}, {TopLevelKind::kOctree, kOctreeLevel}) {}
+
+  /// Is the point in a cell that lists the area, or within the tolerance of one?
+  bool lists(Vec3 point) const {
+    if (!cells_.regions_at(point).empty()) return true;
+    for (int corner = 0; corner < 8; ++corner)
+      if (!cells_.regions_at(moved(point, corner)).empty()) return true;
+    return false;
+  }
+
+ private:
+  /// The point moved towards a corner by the tolerance; onto the root's border where it lies that near outside.
+  Vec3 moved(Vec3 point, int corner) const {
+    const Bounds& root = cells_.nodes().front().bounds;
+    for (int axis = 0; axis < 3; ++axis) {
+      const float p = point[axis];
+      point[axis] = (corner >> axis & 1) ? p + kTolerance : p - kTolerance;
+      if (p < root.lo[axis] && p >= root.lo[axis] - kTolerance) point[axis] = root.lo[axis];
+      if (p > root.hi[axis] && p <= root.hi[axis] + kTolerance) point[axis] = root.hi[axis];
+    }
+    return point;
+  }
+
+  TopLevel cells_;
+};
+
+// --- The builder. ---
+
+float half_area(const Bounds& box) {
+  const Vec3 e = extent(box);
+  return e.x * e.y + e.y * e.z + e.z * e.x;
+}
+
+/// As probabilities, since those of the two measures meet in one ratio.
+RayMeasure surface_probability(const Bounds& root) {
+  return RayMeasure([whole = half_area(root)](const Bounds& box) { return std::min(half_area(box) / whole, 1.0f); },
+                    1.0f);
+}
+RayMeasure projected_probability(const InfluenceArea& area) {
+  const AreaGeometry geometry(area);
+  return RayMeasure(
+      [geometry](const Bounds& box) {
+        return static_cast<float>(geometry.projected_area(box, Culling::kWindow) / geometry.window_area());
+      },
+      1.0f);
+}
+
+/// The main direction of rays at a node varies for points: from the eye to its middle, in its box or not.
+SplitOrientation published_facing(const InfluenceArea& area) {
+  return [area](const NodeContext& node) {
+    const auto* plane = std::get_if<PlaneArea>(&area.shape);
+    const Vec3 v = plane != nullptr ? to_float(normalized(to_double(plane->direction)))
+                                    : center(node.bounds) - std::get<PointArea>(area.shape).eye;
+    const float sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+    const auto quality = [sum](float part) {
+      const float rest = 1 - std::abs(part) / sum;
+      return rest * rest;
+    };
+    return sorted_axes({quality(v.x), quality(v.y), quality(v.z)});
+  };
+}
+
+/// 38 planes, not 39.
+void published_planes(const NodeContext& node, const Bounds&, int axis, uint32_t bins, std::vector<float>& planes) {
+  const float lo = node.bounds.lo[axis], length = node.bounds.hi[axis] - lo;
+  for (uint32_t i = 1; i + 1 < bins; ++i)
+    planes.push_back(lo + length * static_cast<float>(i) / static_cast<float>(bins));
+}
+
+/// Of equal planes the first, whatever it does.
+bool published_preference(const PlanePrice& candidate, const PlanePrice& best) {
+  return candidate.cost < best.cost;
+}
+
+/// Figure 9, but the root stops after its first axis that splits, since its father's probability was infinite, and the
+/// fallback's split always wins. No probability at all (0 / 0) passes for satisfactory.
+SplitVerdict published_decision(const SplitState& state, const PaperParameters& parameters) {
+  if (state.tried == 0) return SplitVerdict::kTry;
+  if (state.node.level == 0 && state.has_split) return SplitVerdict::kSatisfied;
+  const bool is_unknown = state.has_split && !(state.node_measure > 0);
+  if (!is_unknown && state.has_split && state.ratio <= parameters.excellent_ratio) return SplitVerdict::kSatisfied;
+  if (state.next.quality >= parameters.split_plane_quality_threshold) return SplitVerdict::kTry;
+  if (is_unknown || (state.has_split && state.ratio <= parameters.acceptable_ratio)) return SplitVerdict::kSatisfied;
+  return SplitVerdict::kFallBackReplacing;
+}
+
+/// The longest axis, or the second longest if the longest was tried last; no other.
+SplitVerdict published_fallback_decision(const SplitState& state, const PaperParameters&) {
+  if (state.tried > 0) return SplitVerdict::kSatisfied;
+  return state.next.axis == state.last_axis ? SplitVerdict::kSkip : SplitVerdict::kTry;
+}
+
+BuildOptions published_options(const Combo& combo, const InfluenceArea* area, const Bounds& root) {
+  const RayMeasure surface = surface_probability(root);
+  BuildStrategy fallback;
+  fallback.measure = surface;
+  fallback.orientation = longest_axis_orientation();
+  fallback.planes = published_planes;
+  fallback.preference = published_preference;
+  fallback.decision = published_fallback_decision;
+
+  BuildOptions options;
+  options.strategy = fallback;
+  if (combo.pah) options.strategy.measure = projected_probability(*area);
+  if (combo.spfh) options.strategy.orientation = published_facing(*area);
+  options.strategy.decision = published_decision;
+  // After a fallback children were judged against probabilities of the fallback's measure; where it had found no split
+  // and an older one stayed, against infinite ones.
+  options.strategy.hand_down = [surface](const SplitOutcome& split) -> std::pair<float, float> {
+    constexpr float kInfinite = std::numeric_limits<float>::max();
+    if (!split.forced) return {split.left_measure, split.right_measure};
+    if (!split.fallback) return {kInfinite, kInfinite};
+    return {surface(split.left), surface(split.right)};
+  };
+  options.fallback = fallback;
+  options.split_inseparable = false;
+  options.parameters.split_plane_quality_threshold = combo.threshold;
+  return options;
+}
+
+Bvh build_published(const TriangleMesh& mesh, std::span<const uint32_t> members, const BuildOptions& options,
+                    BuildLog* log) {
+  std::vector<Bounds> bounds;
+  std::vector<Vec3> centroids;
+  for (const uint32_t member : members) {
+    bounds.push_back(triangle_bounds(mesh, member));
+    centroids.push_back(triangle_centroid(mesh, member));
+  }
+  Bvh tree = build_paper(bounds, centroids, options, log);
+  for (uint32_t& primitive : tree.prims) primitive = members[primitive];
+  return tree;
+}
+
+Bounds box_of(const TriangleMesh& mesh, std::span<const uint32_t> members) {
+  Bounds box;
+  for (const uint32_t member : members) box.extend(triangle_bounds(mesh, member));
+  return box;
+}
+
+Bvh build_published_global(const TriangleMesh& mesh) {
+  std::vector<uint32_t> all(mesh.triangle_count());
+  std::iota(all.begin(), all.end(), 0u);
+  return build_published(mesh, all, published_options(kGlobal, nullptr, box_of(mesh, all)), nullptr);
+}
+
+// --- One test. ---
+
+/// A slip of the published run.
+StudyArea published_area(const StudyArea& area, const std::string& scene, const Combo& combo) {
+  StudyArea result = area;
+  auto* plane = std::get_if<PlaneArea>(&result.area.shape);
+  if (plane != nullptr && scene == "Suzanne" && area.variant == "oblique" && std::string_view(combo.name) == "PAH+LSPH")
+    plane->half_width = plane->half_height = 0.9f;
+  return result;
+}
+
+std::vector<std::string> run_test(const SceneTrees& scene, const StudyArea& area, const Combo& combo, uint64_t before,
+                                  size_t rays, uint64_t seed) {
+  static const std::vector<StudyColumn> columns = grid_columns();
+  const AreaGeometry geometry(area.area);
+  const Octree octree(geometry.region());
+  const std::vector<uint32_t> members =
+      area_members(scene.mesh, geometry, [&octree](const AreaGeometry&, Vec3 a, Vec3 b, Vec3 c) {
+        return octree.lists(a) || octree.lists(b) || octree.lists(c);
+      });
+  const BuildOptions options = published_options(combo, &area.area, box_of(scene.mesh, members));
+  LocalTree local;
+  local.area = area.area;
+  local.tree = std::make_shared<const Bvh>(build_published(scene.mesh, members, options, &local.log));
+
+  const std::vector<Ray> cast = draw_rays(area, geometry.frame(), before, rays, seed);
+  TreeTest test = exact_test(scene, local, geometry, cast, {});
+  test.serves = [&octree](const Ray& ray) { return octree.lists(ray.origin); };
+  test.accepts = [](const Ray&, const Hit&) { return true; };  // any local hit passed for the nearest
+  Cells cells(columns);
+  set_recipe_cells(cells, {combo.pah ? "PAH" : "SAH", combo.spfh ? "SPFH" : "LSPH", "paper", {}}, options);
+  set_tree_cells(cells, test, options.strategy.measure);
+  return cells.take();
+}
+
+}  // namespace
+
+Study published_study(const StudySources& sources) {
+  Study study{"published", grid_columns(), {}, "rays " + std::to_string(sources.rays), {}};
+  for (const StudyScene& scene : paper_scenes(sources, study.missing)) {
+    const auto lazy = std::make_shared<LazyScene>([load = scene.load] {
+      TriangleMesh mesh = load();
+      Bvh global = build_published_global(mesh);
+      return make_scene_trees(std::move(mesh), std::move(global));
+    });
+    for (const StudyArea& area : scene.areas)
+      for (const Combo& combo : kCombos) {
+        const bool is_plane = std::holds_alternative<PlaneArea>(area.area.shape);
+        if (combo.mislabelled && is_plane) continue;
+        const uint64_t before = draws_before(area, scene.name, combo.second_section, sources.rays);
+        const StudyArea own = published_area(area, scene.name, combo);
+        study.add(
+            {scene.name, is_plane ? "plane" : "point", area.variant, combo.name, "", "published", sources.seed},
+            [=, rays = sources.rays, seed = sources.seed] {
+              return run_test(lazy->get(), own, combo, before, rays, seed);
+            },
+            scene.weight);
+      }
+  }
+  return study;
+}
+
+}  // namespace raygrain::study

@@ -1,0 +1,50 @@
+#include "study/ray_sums.h"
+
+#include "raygrain/analyze.h"
+
+#include "study/hit_check.h"
+
+namespace raygrain::study {
+namespace {
+
+struct Search {
+  Hit hit;
+  double full = 0, pruned = 0;
+};
+
+Search search(const Bvh& tree, const TriangleMesh& mesh, const Ray& ray, const CostModel& costs) {
+  TraceCounters full, pruned;
+  intersect(tree, mesh, ray, {}, {.prune = false}, &full);
+  const Hit hit = intersect(tree, mesh, ray, {}, {}, &pruned);
+  return {hit, ray_cost(full, costs), ray_cost(pruned, costs)};
+}
+
+}  // namespace
+
+RaySums sum_rays(const TreeTest& test) {
+  RaySums sums;
+  sums.rays = test.rays.size();
+  for (const Ray& ray : test.rays) {
+    const Search global = search(test.scene.global, test.scene.mesh, ray, test.costs);
+    sums.global += global.full;
+    sums.global_pruned += global.pruned;
+    sums.hits += is_hit(global.hit) ? 1 : 0;
+    bool accepted = false;
+    if (test.serves(ray)) {
+      const Search local = search(*test.local.tree, test.scene.mesh, ray, test.costs);
+      ++sums.served;
+      sums.local += local.full;
+      sums.local_pruned += local.pruned;
+      sums.local_squares += local.full * local.full;
+      accepted = is_hit(local.hit) && test.accepts(ray, local.hit);
+      sums.mismatches += accepted && !is_same_hit(local.hit, global.hit) ? 1 : 0;
+    }
+    sums.accepted += accepted ? 1 : 0;
+    if (accepted) continue;
+    sums.miss += global.full;
+    sums.miss_pruned += global.pruned;
+  }
+  return sums;
+}
+
+}  // namespace raygrain::study

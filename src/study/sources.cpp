@@ -1,0 +1,92 @@
+#include "study/sources.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "raygrain/error.h"
+#include "raygrain/io.h"
+
+#include "base/nearest_name.h"
+#include "study/paper_experiments.h"
+
+namespace raygrain::study {
+namespace {
+
+constexpr double kLargeWeight = 10;
+
+/// About a thousand triangles weigh one.
+double weight_of(std::string_view scene) {
+  if (scene == "Sponza" || scene == "Crowd") return 300;
+  if (scene == "Random100") return 0.1;
+  return scene == "Random1000" || scene == "Suzanne" ? 1 : 6;
+}
+
+void check_names(const StudySources& sources, const std::vector<StudyScene>& extra) {
+  std::vector<std::string_view> names;
+  for (const PaperExperiment& experiment : paper_experiments())
+    if (names.empty() || names.back() != experiment.scene) names.push_back(experiment.scene);
+  for (const StudyScene& scene : extra) names.push_back(scene.name);
+  for (const std::string& name : sources.only)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw Error(ErrorCode::kUsage, name, "is no scene of this study", suggestion(name, names));
+}
+
+}  // namespace
+
+bool is_wanted(const StudySources& sources, const std::string& scene) {
+  return sources.only.empty() || std::find(sources.only.begin(), sources.only.end(), scene) != sources.only.end();
+}
+
+bool is_large(const StudyScene& scene) {
+  return scene.weight > kLargeWeight;
+}
+
+TriangleMesh load_scaled(const std::string& path, float scale) {
+  TriangleMesh mesh = load_scene(path).mesh;
+  if (scale != 1)
+    for (Vec3& vertex : mesh.vertices) vertex = vertex * scale;
+  return mesh;
+}
+
+StudyScene procedural_scene(const std::string& text, const std::string& name) {
+  const Scene scene = generate_scene(parse_procedural(text));
+  StudyScene result{name,
+                    [text] { return generate_scene(parse_procedural(text)).mesh; },
+                    {},
+                    static_cast<double>(scene.mesh.triangle_count()) / 1000};
+  for (const InfluenceArea& area : scene.areas) result.areas.push_back({area.name, area});
+  return result;
+}
+
+std::vector<StudyScene> paper_scenes(const StudySources& sources, std::vector<std::string>& missing,
+                                     const std::vector<StudyScene>& extra) {
+  check_names(sources, extra);
+  std::vector<StudyScene> scenes;
+  std::string_view left_out;
+  for (const PaperExperiment& experiment : paper_experiments()) {
+    const std::string name(experiment.scene);
+    if (!is_wanted(sources, name) || experiment.scene == left_out) continue;
+    std::string path(experiment.source);
+    const bool is_file = !path.starts_with("procedural:");
+    if (is_file) {
+      path = sources.scenes.empty() ? "" : sources.scenes + '/' + path;
+      std::error_code none;
+      if (path.empty() || !std::filesystem::is_regular_file(path, none)) {
+        left_out = experiment.scene;
+        missing.push_back(name + ": needs " + std::string(experiment.source) +
+                          (sources.scenes.empty() ? "; name its folder with --scenes" : " in " + sources.scenes));
+        continue;
+      }
+    }
+    if (scenes.empty() || scenes.back().name != name)
+      scenes.push_back({name,
+                        [path, scale = experiment.scale] { return load_scaled(path, scale); },
+                        {},
+                        weight_of(experiment.scene)});
+    const std::string variant(experiment.variant);
+    scenes.back().areas.push_back({variant, InfluenceArea{variant, experiment.shape}});
+  }
+  return scenes;
+}
+
+}  // namespace raygrain::study

@@ -1,0 +1,28 @@
+// Where the scenes of ready-made studies come from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "raygrain/study.h"
+
+namespace raygrain::study {
+
+/// The scenes of the paper that are there, with their areas; `missing` says which are not. Throws Error (kUsage) for
+/// names in `sources.only` that no scene of `extra` or the paper has.
+std::vector<StudyScene> paper_scenes(const StudySources& sources, std::vector<std::string>& missing,
+                                     const std::vector<StudyScene>& extra = {});
+
+/// "procedural:..." with its own areas, named as its kind and size.
+StudyScene procedural_scene(const std::string& text, const std::string& name);
+
+/// The mesh of a source ("procedural:..." or a file), each vertex times `scale`.
+TriangleMesh load_scaled(const std::string& path, float scale);
+
+/// Is it one of the scenes asked for?
+bool is_wanted(const StudySources& sources, const std::string& scene);
+
+/// More than 100,000 triangles: only a part of a grid's rows is run for it.
+bool is_large(const StudyScene& scene);
+
+}  // namespace raygrain::study

@@ -1,0 +1,184 @@
+#include "study/tree_row.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "raygrain/analyze.h"
+#include "raygrain/heuristics.h"
+
+#include "base/timer.h"
+#include "study/ray_sums.h"
+
+namespace raygrain::study {
+namespace {
+
+constexpr int kTimedPasses = 5;  // the least time of so many is reported
+
+double number(size_t value) {
+  return static_cast<double>(value);
+}
+
+void set_ray_cells(Cells& cells, const RaySums& sums) {
+  const double rays = number(sums.rays), served = number(sums.served), misses = number(sums.rays - sums.accepted);
+  const double mean = sums.local / served, miss = sums.miss / misses;
+  cells.set("real_cost_local", mean);
+  cells.set("pruned_cost", sums.local_pruned / served);
+  cells.set("real_cost_with_fallback", (sums.local + sums.miss) / rays);
+  cells.set("pruned_cost_with_fallback", (sums.local_pruned + sums.miss_pruned) / rays);
+  cells.set("global_cost", sums.global / rays);
+  cells.set("global_pruned_cost", sums.global_pruned / rays);
+  cells.set("local_miss_cost", miss);
+  cells.set("hit_ratio", number(sums.hits) / rays);
+  cells.set("local_hit_ratio", number(sums.accepted) / rays);
+  cells.set("break_even_hit_ratio", break_even_hit_ratio(sums.local / rays, misses > 0 ? miss : 0, sums.global / rays));
+  cells.set("rays", rays);
+  cells.set("served_rays", served);
+  cells.set("real_cost_deviation",
+            served > 1 ? std::sqrt(std::max(0.0, (sums.local_squares - served * mean * mean) / (served - 1))) : 0);
+  cells.set("mismatches", number(sums.mismatches));
+}
+
+void set_shape_cells(Cells& cells, const Bvh& tree, const AreaGeometry& geometry, const RayMeasure& own,
+                     const CostModel& costs) {
+  const TreeStats stats = analyze(tree, own, costs);
+  cells.set("estimated_own", stats.estimated_cost);
+  cells.set("estimated_pah",
+            analyze(tree, projected_area_measure(geometry.area(), Culling::kWindow), costs).estimated_cost);
+  cells.set("estimated_sah", analyze(tree, surface_area_measure(), costs).estimated_cost);
+  cells.set("max_level", stats.max_level);
+  cells.set("mean_leaf_depth", stats.mean_leaf_depth);
+  cells.set("triangles", number(stats.triangles));
+  cells.set("nodes", number(stats.nodes));
+  cells.set("leaves", number(stats.leaves));
+  cells.set("triangles_per_leaf", stats.triangles_per_leaf);
+  cells.set("small_child_ratio", stats.small_child_ratio);
+  cells.set("large_child_ratio", stats.large_child_ratio);
+  cells.set("memory_bytes", number(stats.memory_bytes));
+  const OverlapStats overlap = analyze_overlap(tree, geometry);
+  for (size_t i = 0; i < kOverlapLevels.size(); ++i) {
+    const std::string name = "overlap" + std::to_string(kOverlapLevels[i]);
+    cells.set(name, overlap.plain[i]);
+    cells.set(name + "_culled", overlap.culled[i]);
+  }
+}
+
+void set_build_cells(Cells& cells, const LocalTree& local) {
+  const BuildStats stats = analyze_build(*local.tree, local.log);
+  cells.set("orientations_per_node", stats.orientations_per_node);
+  cells.set("fallback_share", stats.fallback_share);
+  cells.set("build_seconds", stats.times.total);
+  cells.set("orientation_seconds", stats.times.orientations);
+  cells.set("candidate_seconds", stats.times.candidates);
+}
+
+/// Seconds of one nearest-hit search, mean over the rays, one thread, least of a few passes.
+double search_seconds(const WideBvh& tree, std::span<const Ray> rays) {
+  if (rays.empty()) return std::nan("");
+  std::vector<Hit> hits(rays.size());
+  double least = kInf;
+  for (int pass = 0; pass < kTimedPasses; ++pass) {
+    const Timer timer;
+    tree.intersect(rays, hits);
+    least = std::min(least, timer.seconds());
+  }
+  return least / number(rays.size());
+}
+
+void set_time_cells(Cells& cells, const TreeTest& test, const RayMeasure& own) {
+  std::vector<Ray> served;
+  std::copy_if(test.rays.begin(), test.rays.end(), std::back_inserter(served), test.serves);
+  const WideBvh wide(*test.local.tree, test.scene.mesh, {.measure = own});
+  cells.set("ray_seconds", search_seconds(wide, served));
+  cells.set("global_ray_seconds", search_seconds(test.scene.wide_global, served));
+}
+
+}  // namespace
+
+void set_tree_cells(Cells& cells, const TreeTest& test, const RayMeasure& own) {
+  set_shape_cells(cells, *test.local.tree, test.geometry, own, test.costs);
+  set_build_cells(cells, test.local);
+  set_ray_cells(cells, sum_rays(test));
+  set_time_cells(cells, test, own);
+}
+
+void set_recipe_cells(Cells& cells, const Recipe& recipe, const BuildOptions& options) {
+  cells.set("measure", recipe.measure);
+  cells.set("orientation", recipe.orientation);
+  cells.set("builder", recipe.builder);
+  cells.set("split_plane_quality_threshold", static_cast<double>(options.parameters.split_plane_quality_threshold));
+  cells.set("acceptable_ratio", static_cast<double>(options.parameters.acceptable_ratio));
+  cells.set("excellent_ratio", static_cast<double>(options.parameters.excellent_ratio));
+  cells.set("bins", options.parameters.bins);
+  cells.set("max_non_fallback_levels", options.parameters.max_non_fallback_levels);
+}
+
+TreeTest exact_test(const SceneTrees& scene, const LocalTree& local, const AreaGeometry& geometry,
+                    std::span<const Ray> rays, const CostModel& costs) {
+  return {scene,
+          local,
+          geometry,
+          rays,
+          costs,
+          [&geometry](const Ray& ray) { return geometry.serves(ray); },
+          [&geometry](const Ray& ray, const Hit& hit) { return hit.t <= exit_distance(geometry.region(), ray); }};
+}
+
+}  // namespace raygrain::study
+
+namespace raygrain {
+
+std::vector<StudyColumn> grid_columns() {
+  return {{"real_cost_local"},
+          {"real_cost_with_fallback"},
+          {"estimated_pah"},
+          {"estimated_sah"},
+          {"hit_ratio"},
+          {"max_level"},
+          {"overlap4"},
+          {"overlap7"},
+          {"overlap10"},
+          {"overlap15"},
+          {"overlap100"},
+          {"overlap4_culled"},
+          {"overlap7_culled"},
+          {"overlap10_culled"},
+          {"overlap15_culled"},
+          {"overlap100_culled"},
+          {"pruned_cost"},
+          {"mean_leaf_depth"},
+          {"orientations_per_node"},
+          {"fallback_share"},
+          {"pruned_cost_with_fallback"},
+          {"global_cost"},
+          {"global_pruned_cost"},
+          {"local_miss_cost"},
+          {"local_hit_ratio"},
+          {"break_even_hit_ratio"},
+          {"estimated_own"},
+          {"rays"},
+          {"served_rays"},
+          {"real_cost_deviation"},
+          {"mismatches"},
+          {"triangles"},
+          {"nodes"},
+          {"leaves"},
+          {"triangles_per_leaf"},
+          {"small_child_ratio"},
+          {"large_child_ratio"},
+          {"memory_bytes"},
+          {"measure"},
+          {"orientation"},
+          {"builder"},
+          {"split_plane_quality_threshold"},
+          {"acceptable_ratio"},
+          {"excellent_ratio"},
+          {"bins"},
+          {"max_non_fallback_levels"},
+          {"build_seconds", false},
+          {"orientation_seconds", false},
+          {"candidate_seconds", false},
+          {"ray_seconds", false},
+          {"global_ray_seconds", false}};
+}
+
+}  // namespace raygrain

@@ -1,0 +1,246 @@
+#include "raygrain/coverage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "raygrain/error.h"
+
+#include "base/parallel.h"
+#include "base/timer.h"
+#include "trace/coverage_grid.h"
+#include "trace/kernels/coverage_kernels.h"
+#include "trace/kernels/kernels.h"
+
+namespace raygrain {
+
+struct Coverage::Data {
+  CoverageGrid grid;
+  Isa isa = Isa::kScalar;
+  std::optional<bool> sorts;
+  double seconds = 0;
+};
+
+namespace {
+
+/// Sorting pays where so many rays meet each tile, on average ...
+constexpr size_t kRaysPerTile = 4;
+/// ... and the grid does not fit the caches anyway.
+constexpr size_t kSmallGrid = size_t{1} << 20;
+constexpr size_t kMostRaysPerTask = size_t{1} << 18;
+constexpr size_t kLeastRaysPerTask = 4096;
+
+size_t bytes_of(const CoverageGrid& grid) {
+  return grid.tiles.capacity() * sizeof(CoverageTile) + grid.cells.capacity() * sizeof(CoverageCell) +
+         grid.references.capacity() * sizeof(CoverageReference) + grid.triangles.capacity() * sizeof(CoverageTriangle) +
+         grid.near_triangles.capacity() * sizeof(uint32_t);
+}
+
+/// +1 for directions against the light's, -1 for those along it, 0 for others.
+int sense_of(const CoverageGrid& grid, Vec3 direction) {
+  const Vec3d v = to_double(direction);
+  const Vec3d q{dot(grid.map.rows[0], v), dot(grid.map.rows[1], v), dot(grid.map.rows[2], v)};
+  const double along = std::abs(q.z);
+  if (!(along >= 0x1p-60 && along <= 0x1p60) || std::max(std::abs(q.x), std::abs(q.y)) > kMostSlope * along) return 0;
+  return q.z > 0 ? 1 : -1;
+}
+
+Vec3d turn(const ColumnMap& map, Vec3d v) {
+  return {dot(map.rows[0], v), dot(map.rows[1], v), dot(map.rows[2], v)};
+}
+
+/// Parallel rays, in double precision: better than the errors that the grid allows for.
+bool column_along(const CoverageGrid& grid, const Ray& ray, int wanted, SingleColumn& column) {
+  if (sense_of(grid, ray.direction) != wanted) return false;
+  const Vec3d q = grid.map.turned(ray.origin);
+  const double along = turn(grid.map, to_double(ray.direction)).z;
+  column = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z),
+            static_cast<float>(q.z + along * static_cast<double>(ray.tmax))};
+  return column.s >= grid.s_lo && column.s <= grid.s_hi;
+}
+
+/// A ray whose line passes the eye and that ends there, up to rounding.
+bool column_to_eye(const CoverageGrid& grid, const Ray& ray, SingleColumn& column) {
+  const Vec3d to_eye = to_double(grid.map.center) - to_double(ray.origin), direction = to_double(ray.direction);
+  const double distance = dot(to_eye, to_eye), size = dot(direction, direction), along = dot(to_eye, direction);
+  if (!(size >= 0x1p-120 && size <= 0x1p120 && distance <= 0x1p120 && along > 0)) return false;
+  const Vec3d beside = cross(to_eye, direction);
+  if (!(dot(beside, beside) <= 0.99 * kMostOffset * kMostOffset * distance * size)) return false;
+  const double end = static_cast<double>(ray.tmax) * size;  // against `along`, where the ray passes the eye
+  if (!(end >= along * (1 - kMostOffset) && end <= along * (1 + kMostOffset))) return false;
+  const Vec3d q = turn(grid.map, -to_eye);
+  if (!(q.z > 0)) return false;
+  const double s = 1 / q.z;
+  column = {static_cast<float>(q.x * s), static_cast<float>(q.y * s), static_cast<float>(s), kInf};
+  return column.s >= grid.s_lo && column.s <= grid.s_hi;
+}
+
+bool column_from_eye(const CoverageGrid& grid, const Ray& ray, SingleColumn& column) {
+  if (ray.origin != grid.map.center) return false;
+  const Vec3d q = turn(grid.map, to_double(ray.direction));
+  if (!(q.z >= 0x1p-60 && q.z <= 0x1p60)) return false;
+  column = {static_cast<float>(q.x / q.z), static_cast<float>(q.y / q.z), kInf, 0};
+  return true;
+}
+
+void pass_on(size_t count, std::span<const uint32_t> subset, std::vector<uint32_t>& rest) {
+  if (!subset.empty()) return void(rest.insert(rest.end(), subset.begin(), subset.end()));
+  for (size_t i = 0; i < count; ++i) rest.push_back(static_cast<uint32_t>(i));
+}
+
+bool pays_to_sort(const CoverageGrid& grid, size_t rays) {
+  return rays >= kRaysPerTile * grid.tiles.size() && bytes_of(grid) > kSmallGrid;
+}
+
+/// Runs ask(batch, rest, counters) over parts of the rays.
+template <class Ask>
+void in_parts(const CoverageGrid& grid, std::optional<bool> sorts, const ColumnRays& rays, size_t points,
+              std::span<const uint32_t> subset, std::vector<uint32_t>& rest, unsigned threads,
+              CoverageCounters* counters, const Ask& ask) {
+  if (points > 0xffffffffu) throw Error(ErrorCode::kLimit, "Coverage", "more than 2^32 rays in one call");
+  const size_t count = subset.empty() ? points : subset.size();
+  const bool sorted = sorts ? *sorts : pays_to_sort(grid, count);
+  if (count <= kLeastRaysPerTask) {
+    CoverageCounters unwanted;
+    const uint32_t* chosen = subset.empty() ? nullptr : subset.data();
+    return ask({rays, chosen, 0, static_cast<uint32_t>(count), sorted}, rest,
+               counters != nullptr ? *counters : unwanted);
+  }
+  const unsigned workers = threads == 0 ? default_threads() : threads;
+  const size_t grain = std::clamp((count + workers - 1) / workers, kLeastRaysPerTask, kMostRaysPerTask);
+  const size_t parts = (count + grain - 1) / grain;
+  std::vector<std::vector<uint32_t>> rests(parts);
+  std::vector<CoverageCounters> counts(parts);
+  parallel_for(count, grain, threads, [&](size_t begin, size_t end) {
+    ColumnBatch batch{rays, subset.empty() ? nullptr : subset.data() + begin, static_cast<uint32_t>(begin),
+                      static_cast<uint32_t>(end - begin), sorted};
+    ask(batch, rests[begin / grain], counts[begin / grain]);
+  });
+  for (size_t i = 0; i < parts; ++i) {
+    rest.insert(rest.end(), rests[i].begin(), rests[i].end());
+    if (counters != nullptr) counters->add(counts[i]);
+  }
+}
+
+void check_sizes(size_t rays, size_t answers) {
+  if (rays != answers)
+    throw Error(ErrorCode::kUsage, "Coverage",
+                std::to_string(rays) + " rays and room for " + std::to_string(answers) + " answers");
+}
+
+}  // namespace
+
+void CoverageCounters::add(const CoverageCounters& other) {
+  rays += other.rays;
+  covered += other.covered;
+  free += other.free;
+  triangle_tests += other.triangle_tests;
+  confirmations += other.confirmations;
+}
+
+Coverage::Coverage() : data_(std::make_shared<const Data>()) {}
+
+Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea& area,
+                   const CoverageOptions& options) {
+  if (mesh == nullptr) throw Error(ErrorCode::kUsage, "mesh", "is missing");
+  if (!(options.cells_per_triangle > 0) || options.triangles_per_tile == 0)
+    throw Error(ErrorCode::kUsage, "CoverageOptions", "densities must be positive");
+  const Isa isa = options.isa ? *options.isa : default_isa();
+  if (kernels(isa) == nullptr)
+    throw Error(ErrorCode::kUsage, "CoverageOptions::isa", "this CPU does not offer '" + std::string(name(isa)) + "'");
+  const Timer timer;
+  const CoverageDensity density{options.cells_per_triangle, static_cast<double>(options.triangles_per_tile)};
+  Data data{build_coverage(std::move(mesh), AreaGeometry(area), density, options.threads), isa, options.sorts, 0};
+  data.seconds = timer.seconds();
+  data_ = std::make_shared<const Data>(std::move(data));
+}
+
+int Coverage::sense(Vec3 direction) const {
+  return is_useful() && !data_->grid.map.is_eye ? sense_of(data_->grid, direction) : 0;
+}
+
+bool Coverage::has_eye(Vec3 point) const {
+  return is_useful() && data_->grid.map.is_eye && point == data_->grid.map.center;
+}
+
+std::optional<bool> Coverage::occluded(const Ray& ray) const {
+  const CoverageGrid& grid = data_->grid;
+  SingleColumn column{};
+  if (!is_useful() || ray.tmin != 0) return {};
+  if (!(grid.map.is_eye ? column_to_eye(grid, ray, column) : column_along(grid, ray, 1, column))) return {};
+  return coverage_kernels(data_->isa).any_of_one(grid, column, ray);
+}
+
+std::optional<Hit> Coverage::intersect(const Ray& ray) const {
+  const CoverageGrid& grid = data_->grid;
+  SingleColumn column{};
+  if (!is_useful() || ray.tmin != 0 || ray.tmax != kInf) return {};
+  if (!(grid.map.is_eye ? column_from_eye(grid, ray, column) : column_along(grid, ray, -1, column))) return {};
+  return coverage_kernels(data_->isa).nearest_of_one(grid, column, ray);
+}
+
+bool Coverage::is_useful() const {
+  return data_->grid.is_useful();
+}
+
+void Coverage::occluded(std::span<const Vec3> origins, Vec3 direction, std::span<uint8_t> flags,
+                        std::vector<uint32_t>& rest, std::span<const uint32_t> subset, unsigned threads,
+                        CoverageCounters* counters) const {
+  check_sizes(origins.size(), flags.size());
+  const CoverageGrid& grid = data_->grid;
+  if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != 1) return pass_on(origins.size(), subset, rest);
+  in_parts(grid, data_->sorts, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
+           threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
+             coverage_kernels(data_->isa).any(grid, batch, flags.data(), others, counts);
+           });
+}
+
+void Coverage::occluded_towards(std::span<const Vec3> origins, Vec3 point, std::span<uint8_t> flags,
+                                std::vector<uint32_t>& rest, std::span<const uint32_t> subset, unsigned threads,
+                                CoverageCounters* counters) const {
+  check_sizes(origins.size(), flags.size());
+  const CoverageGrid& grid = data_->grid;
+  if (!is_useful() || !grid.map.is_eye || point != grid.map.center) return pass_on(origins.size(), subset, rest);
+  in_parts(grid, data_->sorts, {ColumnRays::Kind::kTowards, point, origins.data()}, origins.size(), subset, rest,
+           threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
+             coverage_kernels(data_->isa).any(grid, batch, flags.data(), others, counts);
+           });
+}
+
+void Coverage::intersect(std::span<const Vec3> origins, Vec3 direction, std::span<Hit> hits,
+                         std::vector<uint32_t>& rest, std::span<const uint32_t> subset, unsigned threads,
+                         CoverageCounters* counters) const {
+  check_sizes(origins.size(), hits.size());
+  const CoverageGrid& grid = data_->grid;
+  if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != -1) return pass_on(origins.size(), subset, rest);
+  in_parts(grid, data_->sorts, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
+           threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
+             coverage_kernels(data_->isa).nearest(grid, batch, hits.data(), others, counts);
+           });
+}
+
+void Coverage::intersect_from(Vec3 eye, std::span<const Vec3> directions, std::span<Hit> hits,
+                              std::vector<uint32_t>& rest, std::span<const uint32_t> subset, unsigned threads,
+                              CoverageCounters* counters) const {
+  check_sizes(directions.size(), hits.size());
+  const CoverageGrid& grid = data_->grid;
+  if (!is_useful() || !grid.map.is_eye || eye != grid.map.center) return pass_on(directions.size(), subset, rest);
+  in_parts(grid, data_->sorts, {ColumnRays::Kind::kFrom, eye, directions.data()}, directions.size(), subset, rest,
+           threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
+             coverage_kernels(data_->isa).nearest(grid, batch, hits.data(), others, counts);
+           });
+}
+
+size_t Coverage::cell_count() const {
+  return data_->grid.cells.size();
+}
+
+size_t Coverage::memory_bytes() const {
+  return bytes_of(data_->grid);
+}
+
+double Coverage::build_seconds() const {
+  return data_->seconds;
+}
+
+}  // namespace raygrain

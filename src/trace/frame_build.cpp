@@ -1,0 +1,88 @@
+// From triangles to a tree in ray space.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "raygrain/error.h"
+#include "raygrain/frame_tree.h"
+
+#include "base/parallel.h"
+#include "build/estimate.h"
+
+namespace raygrain {
+namespace {
+
+Bounds bounds_of(const RayFrame& frame, const std::array<Vec3, 3>& corners, const Bounds& box) {
+  return frame_bounds(frame, corners[0], corners[1], corners[2], box);
+}
+
+struct FramePrimitives {
+  std::vector<uint32_t> ids;
+  std::vector<Bounds> bounds;
+  std::vector<Vec3> centers;
+};
+
+FramePrimitives primitives_in(const RayFrame& frame, const TriangleCorners& corners,
+                              std::span<const uint32_t> triangles, unsigned threads) {
+  std::vector<Bounds> all(triangles.size());
+  parallel_for(triangles.size(), 1024, threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) all[i] = bounds_of(frame, corners.at_id(triangles[i]), frame.domain);
+  });
+  FramePrimitives result;
+  for (size_t i = 0; i < triangles.size(); ++i) {
+    if (is_empty(all[i])) continue;
+    result.ids.push_back(triangles[i]);
+    result.bounds.push_back(all[i]);
+    result.centers.push_back(center(all[i]));
+  }
+  return result;
+}
+
+/// The weights with the z term: in the frame, depths and widths have different units.
+Vec3 weights_of(const FrameBuildOptions& options, const Bounds& scene) {
+  const Vec3 size = extent(scene);
+  const double across = std::sqrt(static_cast<double>(size.x) * static_cast<double>(size.y));
+  const double term = size.z > 0 ? static_cast<double>(options.z_term) * across / static_cast<double>(size.z) : 0;
+  const Vec3d w = options.weights / options.weights.z;
+  return to_float(Vec3d{w.x + term, w.y + term, 1});
+}
+
+bool fits_floats(const Bounds& scene) {
+  constexpr float kLeast = 0x1p-30f, kGreatest = 0x1p30f;
+  const auto size = [&](int axis) { return std::max(std::abs(scene.lo[axis]), std::abs(scene.hi[axis])); };
+  const float width = std::max(size(0), size(1)), depth = size(2);
+  return width >= kLeast && width <= kGreatest && depth >= kLeast && depth <= kGreatest;
+}
+
+}  // namespace
+
+std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr<const TriangleCorners> corners,
+                                          std::span<const uint32_t> triangles, const FrameBuildOptions& options,
+                                          double* cost) {
+  if (corners == nullptr) throw Error(ErrorCode::kUsage, "build_frame_tree", "has no corners");
+  if (!(options.weights.x >= 0 && options.weights.y >= 0 && options.weights.z > 0 && options.z_term >= 0))
+    throw Error(ErrorCode::kUsage, "FrameBuildOptions", "weights and z_term must not be negative, nor weights.z zero");
+  FramePrimitives primitives = primitives_in(frame, *corners, triangles, options.threads);
+  Bounds scene;
+  for (const Bounds& box : primitives.bounds) scene.extend(box.lo), scene.extend(box.hi);
+  if (primitives.ids.empty()) return FrameTree(frame, {}, std::move(corners), {.isa = options.isa});
+  if (!fits_floats(scene)) return {};
+
+  BuildOptions build;
+  build.strategy.measure = face_weight_measure(weights_of(options, scene));
+  build.parameters.bins = 32;
+  build.parameters.max_levels = 64;
+  build.threads = options.threads;
+  build.clip = [&](uint32_t i, const Bounds& box) { return bounds_of(frame, corners->at_id(primitives.ids[i]), box); };
+  Bvh tree = options.spatial ? build_spatial(primitives.bounds, primitives.centers, build)
+                             : build_binned(primitives.bounds, primitives.centers, build);
+  for (uint32_t& primitive : tree.prims) primitive = primitives.ids[primitive];
+  if (cost != nullptr) *cost = estimated_cost(tree, build.strategy.measure, build.costs);
+  WideOptions w{.measure = build.strategy.measure, .isa = options.isa};
+  if (getenv("ML")) w.max_leaf_size = (uint32_t)atoi(getenv("ML"));
+  if (getenv("CT")) w.costs.triangle = (float)atof(getenv("CT"));
+  if (getenv("CL")) w.costs.leaf = (float)atof(getenv("CL"));
+  return FrameTree(frame, tree, std::move(corners), w);
+}
+
+}  // namespace raygrain

@@ -1,0 +1,92 @@
+// The last word on triangles that floats could not drop: the double-precision test of intersect_triangle for as many as
+// a vector holds. What it is not certain of goes to intersect_triangle. The answer is defined by real arithmetic, so
+// being certain means being equal; docs/theory.md, section "Wide trees in float". Included once per instruction set.
+#if defined(RAYGRAIN_TRACE_KERNELS_CONFIRM_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYGRAIN_TRACE_KERNELS_CONFIRM_INL_H
+#undef RAYGRAIN_TRACE_KERNELS_CONFIRM_INL_H
+#else
+#define RAYGRAIN_TRACE_KERNELS_CONFIRM_INL_H
+#endif
+
+#include <algorithm>
+#include <cmath>
+
+#include "raygrain/ray.h"
+
+#include "trace/kernels/doubles-inl.h"
+#include "trace/wide_tree.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace raygrain::HWY_NAMESPACE {
+namespace {
+
+/// Bit i: triangle i of a group is surely hit, at t, u, v; or is not decided. The others are surely missed.
+struct Verdicts {
+  uint32_t hit, unsure;
+  float t[kDoubles], u[kDoubles], v[kDoubles];
+};
+
+/// Rays against triangles, one pair in each lane. `size` is at least every edge component, `length` the largest
+/// component of the direction.
+struct ConfirmationInput {
+  DoubleVectors direction, to_a, ab, ac;
+  Doubles length, size;
+  Floats tmin, tmax;
+};
+
+HWY_INLINE void confirm(const ConfirmationInput& in, Verdicts& verdicts) {
+  constexpr double kUnit = 0x1p-53;  // the bounds are those of triangle.cpp
+  const DoubleVectors moment = cross(in.direction, in.to_a), normal = cross(in.ab, in.ac);
+  const Doubles sum = dot(in.direction, normal), numerator = dot(in.to_a, normal);
+  const Doubles minus_b = dot(moment, in.ac), weight_c = dot(moment, in.ab);
+  const Doubles weight_b = doubles(0.0) - minus_b;
+  const Doubles weight_a = sum + minus_b - weight_c;
+
+  const Doubles distance = max(max(absolute(in.to_a.x), absolute(in.to_a.y)), absolute(in.to_a.z));
+  const Doubles area = in.size * in.size * doubles(64 * kUnit);
+  const Doubles sum_error = in.length * area, numerator_error = distance * area;
+  const Doubles error = in.length * in.size * doubles(128 * kUnit) * (distance + in.size);
+  const Doubles lowest = min(min(weight_a, weight_b), weight_c), highest = max(max(weight_a, weight_b), weight_c);
+  const Doubles below = doubles(0.0) - error;
+  const uint32_t miss = less(lowest, below) & less(error, highest);
+  const uint32_t inside = less(error, lowest) | less(highest, below);
+  const Doubles magnitude = absolute(sum);
+  const uint32_t steep = less(sum_error * doubles(4.0), magnitude);
+
+  const Doubles inverse = doubles(1.0) / sum, twice = absolute(inverse + inverse);
+  const Doubles t = numerator * inverse, u = weight_b * inverse, v = weight_c * inverse;
+  const Doubles t_size = absolute(t);
+  const Doubles t_radius =
+      multiply_add(multiply_add(t_size, sum_error, numerator_error), twice, t_size * doubles(8 * kUnit));
+  // u and v lie in [0, 1] and were computed below 2.
+  const Doubles radius = multiply_add(multiply_add(sum_error, doubles(2.0), error), twice, doubles(16 * kUnit));
+  const Floats t_low = round(t - t_radius), u_low = round(u - radius), v_low = round(v - radius);
+  const uint32_t t_sure = inside & steep & equal(t_low, round(t + t_radius));
+  const uint32_t sure = t_sure & equal(u_low, round(u + radius)) & equal(v_low, round(v + radius));
+  const uint32_t in_range = less_equal(in.tmin, t_low) & less_equal(t_low, in.tmax);
+  store(t_low, verdicts.t);
+  store(u_low, verdicts.u);
+  store(v_low, verdicts.v);
+  verdicts.hit = sure & in_range;
+  verdicts.unsure = ~(miss | sure | (t_sure & ~in_range));
+}
+
+/// One ray against the triangles first ... first + kDoubles - 1 of a leaf.
+HWY_INLINE void confirm(const Ray& ray, const WideLeaf& leaf, float size, size_t first, Verdicts& verdicts) {
+  const auto corner = [&](size_t c) {
+    return DoubleVectors{load_doubles(leaf.corner(c, 0) + first), load_doubles(leaf.corner(c, 1) + first),
+                         load_doubles(leaf.corner(c, 2) + first)};
+  };
+  const Vec3 d = ray.direction;
+  const float length = std::max(std::max(std::abs(d.x), std::abs(d.y)), std::abs(d.z));
+  const DoubleVectors a = corner(0);
+  confirm({doubles(d), a - doubles(ray.origin), corner(1) - a, corner(2) - a, doubles(length), doubles(size),
+           floats(ray.tmin), floats(ray.tmax)},
+          verdicts);
+}
+
+}  // namespace
+}  // namespace raygrain::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,92 @@
+// Which subtrees of a binary tree become the nodes and leaves of a wide one, and where they go in memory.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "raygrain/bvh.h"
+#include "raygrain/wide.h"
+
+#include "trace/wide_tree.h"
+
+namespace raygrain {
+
+/// Throws Error (kUsage, naming the field).
+void validate(const WideOptions& options);
+
+/// A node or leaf of the wide tree to be.
+struct WideItem {
+  uint32_t root;  // of the binary subtree
+  uint32_t first_child = 0, children = 0;
+  uint64_t offset = 0;  // of a node from the first node, of a leaf from the first leaf
+
+  bool is_leaf() const { return children == 0; }
+};
+
+/// The form of what is written.
+struct WideForm {
+  size_t node_bytes;
+  std::function<size_t(size_t count)> leaf_bytes;    // of a leaf with so many primitives
+  std::function<Bounds(uint32_t primitive)> bounds;  // for leaves that must be halved
+};
+
+/// The wide tree of least expected cost that has the binary tree's boxes, after Ylitie et al., "Efficient incoherent
+/// ray traversal on GPUs through compressed wide BVHs" (2017), section 4.1, under any measure.
+///
+/// Costs are computed bottom-up, for every node of the binary tree and every number of places in a wide node that its
+/// triangles may take; then a plan is made top-down from the choices that gave these costs.
+class WidePlan {
+ public:
+  /// `tree` is not empty and must outlive the plan. Throws as WideBvh's constructor.
+  WidePlan(const Bvh& tree, const WideOptions& options, const WideForm& form);
+
+  std::span<const WideItem> items() const { return items_; }  // children after their parents; the first is the root
+  size_t nodes() const { return nodes_; }
+  size_t leaves() const { return leaves_; }
+  uint64_t node_bytes() const { return node_bytes_; }
+  uint64_t leaf_bytes() const { return leaf_bytes_; }
+  const Bounds& bounds(const WideItem& item) const { return bounds_[item.root]; }
+  const Bounds& root_bounds() const { return bounds_[0]; }
+  /// Appends the item's primitives.
+  void gather(const WideItem& item, std::vector<uint32_t>& ids) const { gather(item.root, ids); }
+
+ private:
+  /// A node of the binary tree with large leaves cut into halves; children come after their parents.
+  struct Binary {
+    uint32_t left = 0, right = 0;   // 0: a leaf
+    uint32_t first = 0, count = 0;  // a leaf's prims; `count` of an inner node: all triangles below
+    bool merged = false;            // an inner node whose triangles are best put into one leaf
+  };
+  using Costs = std::array<float, kWidth + 1>;  // [n]: of the triangles in at most n places; [0] is not used
+
+  void copy_binary();
+  void halve_leaf(size_t index);
+  void measure_nodes();
+  float node_cost(size_t i) const;
+  float leaf_cost(size_t i) const;
+  float split_cost(size_t i, size_t places, size_t left_places) const;
+  void price(size_t i);
+  void collect(uint32_t i, size_t places, std::vector<uint32_t>& roots) const;
+  void collect_halves(uint32_t i, size_t places, std::vector<uint32_t>& roots) const;
+  bool is_wide_leaf(uint32_t i) const { return binary_[i].left == 0 || binary_[i].merged; }
+  void plan();
+  void plan_children(uint32_t parent, const std::vector<uint32_t>& roots, std::vector<uint32_t>& pending);
+  void gather(uint32_t i, std::vector<uint32_t>& ids) const;
+
+  const Bvh& tree_;
+  const WideOptions& options_;
+  const WideForm& form_;
+  std::vector<Binary> binary_;
+  std::vector<Bounds> bounds_;
+  std::vector<float> measures_;
+  std::vector<Costs> costs_;
+  std::vector<WideItem> items_;
+  size_t nodes_ = 0, leaves_ = 0;
+  uint64_t node_bytes_ = 0, leaf_bytes_ = 0;
+};
+
+}  // namespace raygrain

@@ -1,0 +1,247 @@
+// From results to charts: values, verdicts, and recipes that nobody foresaw.
+#include "raygrain/study_report.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "raygrain/error.h"
+
+#include "paper_results.h"
+
+namespace raygrain::test {
+namespace {
+
+StudyReport report_of(const ResultTable& table) {
+  return make_study_report({&table, 1});
+}
+
+/// Multiplies a column of the rows of one recipe.
+void scale(ResultTable& table, const std::string& recipe, const std::string& column, double factor) {
+  const auto at =
+      static_cast<size_t>(std::find(table.columns.begin(), table.columns.end(), column) - table.columns.begin());
+  for (std::vector<std::string>& row : table.rows)
+    if (row[3] == recipe) row[at] = std::to_string(std::stod(row[at]) * factor);
+}
+
+bool has_series(const ChartPanel& panel, const std::string& name) {
+  return std::any_of(panel.series.begin(), panel.series.end(), [&](const ChartSeries& s) { return s.name == name; });
+}
+
+TEST(StudyReport, FindsThePapersFiguresInItsOwnNumbers) {
+  const StudyReport report = report_of(paper_results());
+  for (const char* label :
+       {"Figure 14", "Figure 16", "Figure 17", "Figure 18", "Figure 19", "Figure 20", "Figure 22", "Table 1"})
+    EXPECT_EQ(chart_of(report, label).verdict, Verdict::kConfirms) << label << ": " << chart_of(report, label).finding;
+}
+
+TEST(StudyReport, PutsPublishedValuesBesideMeasuredOnes) {
+  const Chart chart = chart_of(report_of(paper_results()), "Figure 18");
+  size_t compared = 0;
+  for (const ChartPanel& panel : chart.panels)
+    for (const ChartPoint& point : panel.published) {
+      if (point.label.find("8 scenes") == std::string::npos) continue;
+      EXPECT_NEAR(value_of(panel.measured, point.series, point.group), point.y, 1e-4) << point.group;
+      ++compared;
+    }
+  EXPECT_EQ(compared, 16u) << "two recipes in eight groups";
+}
+
+TEST(StudyReport, LeadsWithWhatUsersPay) {
+  const StudyReport report = report_of(paper_results());
+  for (const ChartSection& section : report.sections)
+    for (const Chart& chart : section.charts) {
+      if (chart.panels.empty()) continue;
+      const ChartPanel& first = chart.panels.front();
+      const std::string text = first.title + first.y.title + (first.series.empty() ? "" : first.series.front().name);
+      EXPECT_TRUE(text.find("users pay") != std::string::npos || text.find("pruned cost") != std::string::npos ||
+                  text.find("Time") == 0)
+          << chart.title << ": " << first.title;
+    }
+}
+
+TEST(StudyReport, SaysSoWhereTheMeasuredContradictsThePaper) {
+  ResultTable table = paper_results();
+  scale(table, "SAH+SPFH", "real_cost", 2);
+  const StudyReport report = report_of(table);
+  EXPECT_EQ(chart_of(report, "Figure 18").verdict, Verdict::kContradicts);
+  EXPECT_EQ(chart_of(report, "Figure 16").verdict, Verdict::kConfirms);
+  scale(table, "PAH+SPFH", "overlap4_culled", 3);
+  EXPECT_NE(chart_of(report_of(table), "Figure 22").verdict, Verdict::kConfirms);
+  scale(table, "PAH+SPFH", "estimated_pah", 10);
+  EXPECT_EQ(chart_of(report_of(table), "Figure 14").verdict, Verdict::kContradicts);
+}
+
+TEST(StudyReport, ComputesWhatUsersPay) {
+  ResultTable table = paper_results();
+  scale(table, "PAH+SPFH", "pruned_cost", 0);
+  for (std::vector<std::string>& row : table.rows)
+    if (row[3] == "PAH+SPFH")
+      row[5] = "30";
+    else if (row[3] == "SAH+LSPH")
+      row[5] = "40";
+  const std::string finding = chart_of(report_of(table), "Figure 16").finding;
+  EXPECT_NE(finding.find("0.750 times the pruned cost"), std::string::npos) << finding;
+}
+
+TEST(StudyReport, ShowsUnknownRecipesEverywhere) {
+  const std::string own = "MY-OWN+ALL";
+  const StudyReport report = report_of(paper_results({own}));
+  for (const char* label : {"Figure 16", "Figure 17", "Figure 18", "Figure 19", "Figure 20", "Figure 22"})
+    for (const ChartPanel& panel : chart_of(report, label).panels)
+      EXPECT_TRUE(has_series(panel, own)) << label << ": " << panel.title;
+  const Chart all = chart_of(report, "All recipes against SAH+LSPH");
+  EXPECT_EQ(all.panels.at(0).groups.front(), own) << "the cheapest comes first";
+  EXPECT_NEAR(value_of(all.panels[0].measured, "pruned cost", own), 0.8, 1e-6);
+  EXPECT_NE(all.finding.find(own), std::string::npos) << all.finding;
+}
+
+TEST(StudyReport, HoldsWithoutTimesAndWithFewScenes) {
+  ResultTable table = paper_results();
+  std::erase_if(table.rows, [](const auto& row) { return row[0] != "Wood"; });
+  for (auto& row : table.rows) row[10] = row[11] = row[12] = "";
+  const StudyReport report = report_of(table);
+  EXPECT_EQ(chart_of(report, "Figure 19").verdict, Verdict::kMissing);
+  EXPECT_FALSE(chart_of(report, "Figure 19").panels.empty()) << "the published times are still there";
+  EXPECT_EQ(chart_of(report, "Figure 16").verdict, Verdict::kConfirms);
+  EXPECT_NE(chart_of(report, "Figure 16").notes.at(0).find("1 of the paper's 8 scenes"), std::string::npos);
+}
+
+TEST(StudyReport, ChartsOfAnyStudyHaveIdsThatDiffer) {
+  const ResultTable tables[] = {paper_results(), paper_results({"MINE+ALL"})};
+  const StudyReport report = make_study_report(tables);
+  std::vector<std::string> ids;
+  for (const ChartSection& section : report.sections)
+    for (const Chart& chart : section.charts) ids.push_back(chart.id);
+  std::sort(ids.begin(), ids.end());
+  EXPECT_EQ(std::adjacent_find(ids.begin(), ids.end()), ids.end());
+  EXPECT_THROW(make_study_report({}), Error);
+}
+
+TEST(StudyReport, Table2IsFoundByItsThresholds) {
+  ResultTable table{"parameters",
+                    "",
+                    {"scene", "kind", "variant", "recipe", "setting", "real_cost", "pruned_cost",
+                     "split_plane_quality_threshold", "acceptable_ratio", "excellent_ratio", "bins"},
+                    {}};
+  const auto add = [&](const char* quality, const char* acceptable, const char* excellent, const char* cost,
+                       const char* bins) {
+    const std::string setting = std::string(quality) + acceptable + excellent + bins;
+    table.rows.push_back(
+        {"Wood", "plane", "parallel", "PAH+SPFH", setting, cost, cost, quality, acceptable, excellent, bins});
+  };
+  add("0.4", "1.3", "0.9", "110", "40");
+  add("0.4", "1.3", "0.9", "9999", "8");  // another parameter: not of the table
+  add("0.1", "1.3", "0.9", "88", "40");
+  add("0.8", "1.3", "0.9", "148", "40");
+  add("0.4", "1.1", "0.7", "150", "40");  // the paper says 69.1
+  add("0.4", "1.5", "1.1", "124", "40");
+  const StudyReport report = report_of(table);
+  const Chart chart = chart_of(report, "Table 2");
+  EXPECT_EQ(chart.verdict, Verdict::kPartly) << chart.finding;
+  EXPECT_NE(chart.finding.find("3 of 4"), std::string::npos) << chart.finding;
+  EXPECT_EQ(chart.table.rows.at(0).at(4), "110");
+  EXPECT_EQ(chart.table.rows.at(3).at(5), "69.1");
+}
+
+TEST(StudyReport, StudiesOfOtherThingsHaveTheirOwnCharts) {
+  const ResultTable areas{
+      "areas",
+      "",
+      {"scene", "variant", "recipe", "setting", "areas", "top_level", "top_level_query_seconds", "ray_seconds"},
+      {{"City", "1 areas", "list", "", "1", "list", "1e-9", "1e-7"},
+       {"City", "1 areas", "octree", "level 5", "1", "octree", "2e-9", "1e-7"},
+       {"City", "64 areas", "list", "", "64", "list", "6e-8", "2e-7"},
+       {"City", "64 areas", "octree", "level 5", "64", "octree", "3e-9", "1e-7"}}};
+  const std::string found = chart_of(report_of(areas), "List and octrees over many areas, City").finding;
+  EXPECT_NE(found.find("from 64 areas on"), std::string::npos) << found;
+
+  const ResultTable memory{
+      "memory",
+      "",
+      {"scene", "variant", "total_memory_bytes", "global_memory_bytes", "published_memory_bytes",
+       "total_paper_memory_bytes"},
+      {{"Wood", "parallel", "300", "100", "", ""}, {"section 9.6", "20 areas", "", "", "191220000", "150100000"}}};
+  EXPECT_EQ(chart_of(report_of(memory), "Section 9.6").verdict, Verdict::kContradicts);
+
+  const ResultTable stress{"stress",
+                           "",
+                           {"scene", "recipe", "foreign_share", "pruned_cost_with_fallback", "global_pruned_cost"},
+                           {{"Wood", "PAH+ALL", "0", "10", "20"}, {"Wood", "PAH+ALL", "1", "20", "20"}}};
+  const std::string gains =
+      chart_of(report_of(stress), "Several areas at once, and rays that none of them knows").finding;
+  EXPECT_NE(gains.find("0.500 at 0 % foreign, 1.00 at 100 % foreign"), std::string::npos) << gains;
+}
+
+TEST(StudyReport, JsonIsThereForEveryChart) {
+  const auto json = nlohmann::json::parse(study_report_json(report_of(paper_results({"\xff</script>"}))));
+  EXPECT_EQ(json["sections"][0]["charts"][0]["label"], "Table 1");
+  EXPECT_TRUE(json["sections"][0]["charts"][2]["panels"][0]["reference"].is_null());
+}
+
+TEST(InteractivePage, IsFilledOnceAndSafely) {
+  const StudyReport report = report_of(paper_results({"</script><b>"}));
+  const std::string page = interactive_page(report, "<a>@RAYGRAIN_REPORT@</a>", "t.html");
+  EXPECT_EQ(page.substr(0, 4), "<a>{");
+  EXPECT_EQ(page.find("</script>"), std::string::npos);
+  EXPECT_EQ(page.find('@'), std::string::npos);
+  EXPECT_THROW(interactive_page(report, "<html></html>", "t.html"), Error);
+  EXPECT_THROW(interactive_page(report, "@RAYGRAIN_REPORT@ @RAYGRAIN_REPORT@", "t.html"), Error);
+}
+
+TEST(StaticPage, IsWholeWithoutScripts) {
+  const std::string page = static_page(report_of(paper_results({"<MINE> & \"others\""})), "note <1>");
+  EXPECT_NE(page.find("<svg"), std::string::npos);
+  EXPECT_NE(page.find("Figure 22"), std::string::npos);
+  EXPECT_NE(page.find("&lt;MINE&gt; &amp; &quot;others&quot;"), std::string::npos);
+  for (const char* bad : {"<MINE>", "<script", "http-equiv", "src=", "note <1>"})
+    EXPECT_EQ(page.find(bad), std::string::npos) << bad;
+}
+
+TEST(Markdown, HasFindingsPicturesAndValues) {
+  std::vector<std::string> asked;
+  const std::string text = report_markdown(report_of(paper_results({"a|b"})), [&](const Chart& chart, size_t panel) {
+    asked.push_back(chart.id + std::to_string(panel));
+    return "pictures/" + asked.back() + ".png";
+  });
+  EXPECT_NE(text.find("### Figure 16. "), std::string::npos);
+  EXPECT_NE(text.find("*confirms*: "), std::string::npos);
+  EXPECT_NE(text.find("| plane parallel | 65.5 (65.5) | 88.9 (88.9) "), std::string::npos) << text;
+  EXPECT_NE(text.find("a\\|b"), std::string::npos);
+  EXPECT_GT(asked.size(), 20u);
+  for (const std::string& name : asked) EXPECT_NE(text.find("(pictures/" + name + ".png)"), std::string::npos) << name;
+}
+
+TEST(ChartPictures, AreDrawnOnWhiteInTheirOwnColours) {
+  for (const ChartKind kind :
+       {ChartKind::kBars, ChartKind::kRanking, ChartKind::kDots, ChartKind::kPoints, ChartKind::kLines}) {
+    ChartPanel panel{
+        .title = "title", .kind = kind, .groups = {"one", "two"}, .series = {{"a", "#ff0000"}}, .reference = 3};
+    panel.measured = {{.series = "a", .group = "one", .x = 1, .y = 5}, {.series = "a", .group = "two", .x = 2, .y = 2}};
+    panel.published = {{.series = "a", .group = "one", .x = 1, .y = 4},
+                       {.series = "foreign", .group = "one", .x = 1, .y = 4}};
+    const Image image = chart_image(panel);
+    ASSERT_EQ(image.rgb.size(), size_t{image.width} * image.height * 3);
+    size_t red = 0, dark = 0;
+    for (size_t i = 0; i < image.rgb.size(); i += 3) {
+      red += image.rgb[i] == 255 && image.rgb[i + 1] == 0;
+      dark += image.rgb[i] < 64 && image.rgb[i + 1] < 64;
+    }
+    EXPECT_GT(red, 100u) << static_cast<int>(kind);
+    EXPECT_GT(dark, 100u) << static_cast<int>(kind);
+    EXPECT_NE(chart_svg(panel).find("a, one"), std::string::npos) << "pointing at a mark tells its value";
+  }
+  EXPECT_GT(chart_image(ChartPanel{}).height, 100u) << "nothing to show is no crash";
+  const ChartPanel huge{.y = {"", true},
+                        .groups = {"g"},
+                        .series = {{"a", "no colour"}},
+                        .measured = {{.series = "a", .group = "g", .y = -1},
+                                     {.series = "a", .group = "g", .y = INFINITY},
+                                     {.series = "a", .group = "g", .y = 1e300}}};
+  EXPECT_NE(chart_svg(huge).find("</svg>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace raygrain::test

@@ -1,0 +1,266 @@
+// Coverage grids on every instruction set against brute force, bit for bit: rays of a sun and of a point, aimed at
+// edges, vertices, silhouettes and the window's border.
+#include "raygrain/coverage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "raygrain/error.h"
+#include "raygrain/trace.h"
+
+#include "base/random.h"
+#include "support/mesh_families.h"
+
+namespace raygrain {
+namespace {
+
+bool same_bits(const Hit& a, const Hit& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+Vec3 unit_vector(Random& random) {
+  while (true) {
+    const Vec3d v{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    if (dot(v, v) > 0.01 && dot(v, v) <= 1) return to_float(normalized(v));
+  }
+}
+
+Vec3 vertex(const TriangleMesh& mesh, Random& random) {
+  return mesh.vertex(random.below(mesh.triangle_count()), static_cast<int>(random.below(3)));
+}
+
+/// A point of the mesh: a vertex, on an edge, or inside a triangle; rounded.
+Vec3 point_on(const TriangleMesh& mesh, Random& random) {
+  const size_t t = random.below(mesh.triangle_count());
+  const Vec3d a = to_double(mesh.vertex(t, 0)), b = to_double(mesh.vertex(t, 1)), c = to_double(mesh.vertex(t, 2));
+  const double u = random.below(3) == 0 ? 0 : random.uniform(),
+               v = random.below(3) == 0 ? 0 : random.uniform() * (1 - u);
+  return to_float(a + (b - a) * u + (c - a) * v);
+}
+
+/// Origins of rays along `direction`: on the mesh, before and behind it, near and far, and some that mean nothing.
+std::vector<Vec3> origins_along(const TriangleMesh& mesh, Vec3 direction, size_t count, Random& random) {
+  const Bounds box = mesh_bounds(mesh);
+  const double size = length(to_double(extent(box)));
+  std::vector<Vec3> points;
+  for (size_t i = 0; i < count; ++i) {
+    Vec3d p = to_double(point_on(mesh, random));
+    const double shifts[] = {0, 1e-6, -1e-6, 1e-4, -1e-4, 0.1, -0.1, 1, -1, -1, 0.6, -0.6, 30};
+    p = p + to_double(direction) * (size * shifts[random.below(std::size(shifts))]);
+    if (random.below(4) == 0) p = p + to_double(unit_vector(random)) * (size * 1e-7);
+    if (random.below(4) == 0) p = to_double(box.lo) + (to_double(extent(box)) * 1.2) * random.uniform();
+    points.push_back(to_float(p));
+  }
+  points.push_back({std::nanf(""), 0, 0});
+  points.push_back({0, kInf, 0});
+  return points;
+}
+
+std::vector<Vec3> points_around(const TriangleMesh& mesh, Vec3 eye, size_t count, Random& random) {
+  const double size = length(to_double(extent(mesh_bounds(mesh)))) + 1e-30;
+  std::vector<Vec3> points{eye, {std::nanf(""), 0, 0}, {kInf, 0, 0}};
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3d p = to_double(point_on(mesh, random)), away = p - to_double(eye);
+    const double factors[] = {1, 1, 1.0001, 0.9999, 1.5, 0.5, 0.01, 3};
+    Vec3d q = to_double(eye) + away * factors[random.below(std::size(factors))];
+    if (random.below(4) == 0) q = q + to_double(unit_vector(random)) * (size * 1e-6);
+    if (random.below(8) == 0)
+      q.x = static_cast<double>(eye.x) + std::abs(q.z - static_cast<double>(eye.z));  // between two frusta
+    points.push_back(to_float(q));
+  }
+  return points;
+}
+
+/// Answered and hit rays over all tests of a kind: a test that answers nothing proves nothing.
+struct Tally {
+  size_t asked = 0, answered = 0, hits = 0;
+};
+
+/// Which rays were answered: all but `rest`, which is ascending and without doubles.
+std::vector<bool> answered(size_t count, const std::vector<uint32_t>& rest) {
+  std::vector<bool> is_answered(count, true);
+  EXPECT_TRUE(std::ranges::is_sorted(rest));
+  EXPECT_EQ(std::ranges::adjacent_find(rest), rest.end());
+  for (const uint32_t i : rest) is_answered[i] = false;
+  return is_answered;
+}
+
+std::vector<uint8_t> oracle_flags(const TriangleMesh& mesh, const std::vector<Ray>& rays) {
+  std::vector<uint8_t> flags;
+  for (const Ray& ray : rays) flags.push_back(occluded_reference(mesh, ray));
+  return flags;
+}
+std::vector<Hit> oracle_hits(const TriangleMesh& mesh, const std::vector<Ray>& rays) {
+  std::vector<Hit> hits;
+  for (const Ray& ray : rays) hits.push_back(intersect_reference(mesh, ray));
+  return hits;
+}
+
+void expect_flags(const std::vector<uint8_t>& expected, const std::vector<uint8_t>& flags,
+                  const std::vector<uint32_t>& rest, Tally& tally) {
+  const std::vector<bool> is_answered = answered(expected.size(), rest);
+  for (size_t i = 0; i < expected.size(); ++i) {
+    ++tally.asked;
+    if (!is_answered[i]) continue;
+    ++tally.answered;
+    tally.hits += flags[i];
+    ASSERT_EQ(flags[i], expected[i]) << "ray " << i;
+  }
+}
+
+void expect_hits(const std::vector<Hit>& expected, const std::vector<Hit>& hits, const std::vector<uint32_t>& rest,
+                 Tally& tally) {
+  const std::vector<bool> is_answered = answered(expected.size(), rest);
+  for (size_t i = 0; i < expected.size(); ++i) {
+    ++tally.asked;
+    if (!is_answered[i]) continue;
+    ++tally.answered;
+    tally.hits += is_hit(hits[i]);
+    ASSERT_TRUE(same_bits(hits[i], expected[i])) << "ray " << i;
+  }
+}
+
+/// Single rays that are answered get the same answer; most are where the batch answers.
+void expect_same_singly(const Coverage& coverage, const std::vector<Ray>& rays, const std::vector<uint8_t>& flags,
+                        const std::vector<uint32_t>& rest) {
+  const std::vector<bool> is_answered = answered(rays.size(), rest);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const std::optional<bool> flag = coverage.occluded(rays[i]);
+    if (flag && is_answered[i]) {
+      ASSERT_EQ(*flag, flags[i] != 0) << "ray " << i;
+    }
+  }
+}
+void expect_same_singly(const Coverage& coverage, const std::vector<Ray>& rays, const std::vector<Hit>& hits,
+                        const std::vector<uint32_t>& rest) {
+  const std::vector<bool> is_answered = answered(rays.size(), rest);
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const std::optional<Hit> hit = coverage.intersect(rays[i]);
+    if (hit && is_answered[i]) {
+      ASSERT_TRUE(same_bits(*hit, hits[i])) << "ray " << i;
+    }
+  }
+}
+
+std::vector<Vec3> light_directions(Random& random) {
+  const Vec3 any = unit_vector(random);
+  Vec3 axis{};
+  axis[static_cast<int>(random.below(3))] = random.below(2) == 0 ? 1.0f : -1.0f;
+  return {axis, any, {any.x, 1e-4f * any.y, any.z * 1e-7f}};
+}
+
+/// Scenes of up to 2^60: around greater ones there is no finite area.
+bool has_areas(const TriangleMesh& mesh) {
+  const Bounds box = mesh_bounds(mesh);
+  for (const Vec3 p : {box.lo, box.hi})
+    for (int axis = 0; axis < 3; ++axis)
+      if (!(std::abs(p[axis]) < 0x1p60f)) return false;
+  return true;
+}
+
+template <class Body>
+void for_families(uint64_t seeds, const Body& body) {
+  for (uint64_t seed = 0; seed < test::seed_count(seeds); ++seed)
+    for (const test::NamedMesh& family : test::mesh_families(seed)) {
+      if (family.mesh.triangles.empty() || !has_areas(family.mesh)) continue;
+      SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
+      body(std::make_shared<const TriangleMesh>(family.mesh), seed);
+      if (testing::Test::HasFatalFailure()) return;
+    }
+}
+
+CoverageOptions some_options(uint64_t seed, Isa isa) {
+  const float cells[] = {0.25f, 4, 64};
+  const uint32_t triangles[] = {256, 16, 4};
+  return {cells[seed % 3], triangles[(seed / 3 + seed) % 3], isa, seed % 2 == 1, 1};
+}
+
+TEST(Coverage, AgreesWithTheOracleAlongADirection) {
+  Tally any, nearest;
+  for_families(2, [&](const std::shared_ptr<const TriangleMesh>& mesh, uint64_t seed) {
+    Random random(seed + 100);
+    const Bounds box = mesh_bounds(*mesh);
+    for (const Vec3 light : light_directions(random)) {
+      const InfluenceArea area = directional_light_area("sun", light, box);
+      const std::vector<Vec3> origins = origins_along(*mesh, light, test::seed_count(120), random);
+      std::vector<Ray> towards, away;
+      for (const Vec3 p : origins) towards.push_back({p, -light, 0, kInf}), away.push_back({p, light, 0, kInf});
+      const std::vector<uint8_t> expected_flags = oracle_flags(*mesh, towards);
+      const std::vector<Hit> expected_hits = oracle_hits(*mesh, away);
+      for (const Isa isa : supported_isas()) {
+        SCOPED_TRACE(name(isa));
+        const Coverage coverage(mesh, area, some_options(seed, isa));
+        std::vector<uint32_t> rest;
+        std::vector<uint8_t> flags(origins.size());
+        coverage.occluded(origins, -light, flags, rest);
+        expect_flags(expected_flags, flags, rest, any);
+        expect_same_singly(coverage, towards, flags, rest);
+        rest.clear();
+        std::vector<Hit> hits(origins.size());
+        coverage.intersect(origins, light, hits, rest);
+        expect_hits(expected_hits, hits, rest, nearest);
+        expect_same_singly(coverage, away, hits, rest);
+        if (testing::Test::HasFatalFailure()) return;
+      }
+    }
+  });
+  EXPECT_GT(any.answered, any.asked / 2);
+  EXPECT_GT(any.hits, any.answered / 8);
+  EXPECT_GT(nearest.answered, nearest.asked / 8);
+  EXPECT_GT(nearest.hits, nearest.answered / 3);
+}
+
+TEST(Coverage, AgreesWithTheOracleAboutAPoint) {
+  Tally any, nearest;
+  for_families(2, [&](const std::shared_ptr<const TriangleMesh>& mesh, uint64_t seed) {
+    Random random(seed + 200);
+    const Bounds box = mesh_bounds(*mesh);
+    const Vec3d size = to_double(extent(box));
+    const double reach = length(size);
+    const Vec3d middle = to_double(center(box));
+    const Vec3 eyes[] = {
+        to_float(middle + to_double(unit_vector(random)) * (reach * 0.9)),
+        to_float(to_double(box.lo) +
+                 Vec3d{size.x * random.uniform(), size.y * random.uniform(), size.z * random.uniform()}),
+        vertex(*mesh, random),
+        to_float(to_double(point_on(*mesh, random)) + to_double(unit_vector(random)) * (reach * 1e-8))};
+    for (const Vec3 eye : eyes) {
+      const std::vector<Vec3> points = points_around(*mesh, eye, test::seed_count(100), random);
+      std::vector<Vec3> directions;
+      std::vector<Ray> towards, from;
+      for (const Vec3 p : points) {
+        directions.push_back(p - eye);
+        towards.push_back({p, eye - p, 0, 1}), from.push_back({eye, p - eye, 0, kInf});
+      }
+      const std::vector<uint8_t> expected_flags = oracle_flags(*mesh, towards);
+      const std::vector<Hit> expected_hits = oracle_hits(*mesh, from);
+      for (const InfluenceArea& area : point_light_areas("lamp", eye, box))
+        for (const Isa isa : supported_isas()) {
+          SCOPED_TRACE(area.name + ", " + name(isa));
+          const Coverage coverage(mesh, area, some_options(seed, isa));
+          std::vector<uint32_t> rest;
+          std::vector<uint8_t> flags(points.size());
+          coverage.occluded_towards(points, eye, flags, rest);
+          expect_flags(expected_flags, flags, rest, any);
+          expect_same_singly(coverage, towards, flags, rest);
+          rest.clear();
+          std::vector<Hit> hits(points.size());
+          coverage.intersect_from(eye, directions, hits, rest);
+          expect_hits(expected_hits, hits, rest, nearest);
+          expect_same_singly(coverage, from, hits, rest);
+          if (testing::Test::HasFatalFailure()) return;
+        }
+    }
+  });
+  EXPECT_GT(any.answered, any.asked / 12);  // a sixth is in each frustum
+  EXPECT_GT(any.hits, any.answered / 8);
+  EXPECT_GT(nearest.answered, nearest.asked / 12);
+  EXPECT_GT(nearest.hits, nearest.answered / 3);
+}
+
+}  // namespace
+}  // namespace raygrain
