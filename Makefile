@@ -10,7 +10,8 @@ CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_
 
 BENCH ?= --quick
 
-.PHONY: help build demo study bench bench-dependencies report-page report-page-test report-page-dependencies test test-full asan-test release-test tsan-test clang-test coverage format check-format tidy \
+.PHONY: help build demo study bench bench-dependencies report-page report-page-test report-page-dependencies \
+        test test-full asan-test release-test tsan-test clang-test neon-test coverage format check-format tidy \
         dependencies full-dependencies install clean
 
 help:            ## this list
@@ -37,6 +38,14 @@ bench: bench-dependencies ## against Embree on the same rays; BENCH="--json FILE
 
 demo: build      ## build, then compare the paper's heuristics on a built-in city under a low sun
 	@scripts/demo.sh $(RELEASE)/bin/raygrain build/demo
+
+SCENES ?= ../shared/scenes
+STUDIES ?= paper corrected
+
+study: build     ## the paper's evaluation, sound and corrected, and its report, into build/study; SCENES=DIR, STUDIES="published areas ..."
+	@for study in $(STUDIES); do \
+	  $(RELEASE)/bin/raygrain study $$study --scenes $(SCENES) --jobs $(JOBS) --out build/study/$$study || exit 1; done
+	@$(RELEASE)/bin/raygrain report $(STUDIES:%=build/study/%) --out build/study/report.html --markdown build/study/report.md
 
 report-page-dependencies:
 	@scripts/install-dependencies.sh report-page
@@ -86,6 +95,7 @@ test-full: full-dependencies ## all of it: ThreadSanitizer, Clang, coverage, cla
 	@$(MAKE) --no-print-directory tidy
 	@$(MAKE) --no-print-directory tsan-test
 	@$(MAKE) --no-print-directory clang-test
+	@$(MAKE) --no-print-directory neon-test
 	@$(MAKE) --no-print-directory coverage
 	@$(MAKE) --no-print-directory asan-test
 	@$(call PRESET,release)
@@ -102,6 +112,9 @@ clang-test:
 	@$(call PRESET,clang)
 	@cmake --build build/clang -j $(JOBS)
 	@cd build/clang && $(CTEST)
+
+neon-test:       ## the searches and their tests for 64-bit Arm, in an emulator
+	@JOBS=$(JOBS) scripts/neon-test.sh build/neon
 
 coverage:        ## line coverage of src/, as text and HTML in build/coverage
 	@$(call PRESET,coverage)

@@ -92,13 +92,13 @@ ManyAreas make_areas(const SceneTrees& scene, size_t count, size_t rays, uint64_
 }
 
 void set_ray_cells(Cells& cells, const ManyAreas& many, const TopLevelOptions& options) {
-  const Accelerator accelerator(many.mesh, many.locals, many.global, options);
-  const Accelerator alone(many.mesh, {}, many.global);
-  AcceleratorCounters counters, global;
+  const Accelerator accelerator(many.mesh, many.locals, many.global, options, Traversal::kBinary);
+  AcceleratorCounters counters;
+  TraceCounters alone;
   size_t mismatches = 0;
   for (const Ray& ray : many.rays) {
     const Hit hit = accelerator.intersect(ray, &counters);
-    mismatches += hit == alone.intersect(ray, &global) ? 0 : 1;
+    mismatches += hit == intersect(*many.global, *many.mesh, ray, {}, {}, &alone) ? 0 : 1;
   }
   double least = kInf;
   for (int pass = 0; pass < kTimedPasses; ++pass) {
@@ -111,7 +111,7 @@ void set_ray_cells(Cells& cells, const ManyAreas& many, const TopLevelOptions& o
   work.add(counters.global);
   cells.set("areas_tested", static_cast<double>(counters.areas_tested) / count);
   cells.set("pruned_cost_with_fallback", ray_cost(work, {}) / count);
-  cells.set("global_pruned_cost", ray_cost(global.global, {}) / count);
+  cells.set("global_pruned_cost", ray_cost(alone, {}) / count);
   cells.set("local_hit_ratio", static_cast<double>(counters.local_hits) / count);
   cells.set("mismatches", static_cast<double>(mismatches));
   cells.set("rays", count);

@@ -32,7 +32,7 @@ struct Everything {
   std::once_flag once;
   std::shared_ptr<const TriangleMesh> mesh;
   std::shared_ptr<const Bvh> global;
-  std::unique_ptr<const Accelerator> accelerator, alone;  // alone: the global tree without areas
+  std::unique_ptr<const Accelerator> accelerator;
 
   void make(const SceneTrees& scene, const std::vector<StudyArea>& areas, const Recipe& recipe) {
     mesh = std::make_shared<const TriangleMesh>(scene.mesh);
@@ -40,8 +40,8 @@ struct Everything {
     std::vector<LocalTree> locals;
     for (const StudyArea& area : areas)
       locals.push_back(build_local_tree(*mesh, area.area, recipe, default_registry()));
-    accelerator = std::make_unique<const Accelerator>(mesh, std::move(locals), global);
-    alone = std::make_unique<const Accelerator>(mesh, std::vector<LocalTree>{}, global);
+    accelerator =
+        std::make_unique<const Accelerator>(mesh, std::move(locals), global, TopLevelOptions{}, Traversal::kBinary);
   }
 };
 
@@ -92,11 +92,11 @@ std::vector<std::string> run_row(const Everything& all, double foreign, size_t c
   for (const Ray& ray : rays) {
     AcceleratorCounters own;
     const Hit hit = accelerator.intersect(ray, &own);
-    AcceleratorCounters global;
-    mismatches += is_same_hit(hit, all.alone->intersect(ray, &global)) ? 0 : 1;
-    alone.add(global.global);
+    TraceCounters global;
+    mismatches += is_same_hit(hit, intersect(*all.global, *all.mesh, ray, {}, {}, &global)) ? 0 : 1;
+    alone.add(global);
     if (own.global_searches > 0) {
-      misses.add(global.global);
+      misses.add(global);
       ++missed;
     }
     counters.add(own);
@@ -120,7 +120,8 @@ std::vector<std::string> run_row(const Everything& all, double foreign, size_t c
   cells.set("rays", n);
   cells.set("mismatches", static_cast<double>(mismatches));
   cells.set("ray_seconds", seconds_per_ray(rays, [&](const Ray& ray) { accelerator.intersect(ray); }));
-  cells.set("global_ray_seconds", seconds_per_ray(rays, [&](const Ray& ray) { all.alone->intersect(ray); }));
+  cells.set("global_ray_seconds",
+            seconds_per_ray(rays, [&](const Ray& ray) { intersect(*all.global, *all.mesh, ray); }));
   return cells.take();
 }
 
