@@ -59,6 +59,10 @@ Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
           : fmt::format("{} is best: {} times the {} of {} (geometric mean of {}, from {} to {}).", best.recipe,
                         short_number(best.ratio.mean), paid.front().series, baseline, counted(best.ratio.count, "test"),
                         short_number(best.ratio.low), short_number(best.ratio.high));
+  if (paid.size() > 1 && std::string_view(paid[1].series) == "time per ray")
+    if (const std::vector<RankedRecipe> timed = ranking(study.rows, baseline, paid[1].value); !timed.empty())
+      chart.finding += fmt::format(" In time {} is best: {} times that of {}.", timed.front().recipe,
+                                   short_number(timed.front().ratio.mean), baseline);
   chart.panels.push_back(std::move(panel));
   return chart;
 }
