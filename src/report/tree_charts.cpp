@@ -50,8 +50,9 @@ Chart recipe_prediction_chart(const StudyResults& study) {
       study.rows, [](const ResultRow& row) { return row.recipe; }, tests, prediction_error);
   std::string text;
   for (const ChartSeries& series : panel.series) {
-    const std::vector<ResultRow> rows = filtered(
-        study.rows, [&](const ResultRow& row) { return tests(row) == series.name && row.recipe.starts_with("PAH+"); });
+    const std::vector<ResultRow> rows = filtered(study.rows, [&](const ResultRow& row) {
+      return tests(row) == series.name && row.recipe.starts_with("PAH+") && row.text("setting").empty();
+    });
     if (any_measured(rows, prediction_error))
       text +=
           fmt::format("{}{} for {}", text.empty() ? "" : ", ", percent(mean_of(rows, prediction_error)), series.name);
