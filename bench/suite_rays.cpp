@@ -9,6 +9,7 @@
 
 #include "raygrain/trace.h"
 
+#include "base/random.h"
 #include "base/timer.h"
 #include "measure.h"
 #include "peer.h"
@@ -20,6 +21,13 @@ namespace {
 
 constexpr int kRounds = 5;
 constexpr int kTurns = 20;
+
+/// The accelerators of this suite.
+AcceleratorOptions bench_options() {
+  AcceleratorOptions options;
+  options.quality = Quality::kBalanced;
+  return options;
+}
 
 struct Contestant {
   std::function<void(Answers&)> trace;
@@ -169,7 +177,8 @@ class RaysSuite {
   static void check_agreement(const StructuredRays& rays, const Answers& a, const Answers& b) {
     for (size_t i = 0; i < rays.set.rays.size(); ++i)
       if (!same_answer(rays.set.any, a, b, i))
-        throw std::logic_error("raygrain's interfaces disagree about ray " + std::to_string(i) + " of " + rays.set.name);
+        throw std::logic_error("raygrain's interfaces disagree about ray " + std::to_string(i) + " of " +
+                               rays.set.name);
   }
 
   /// The scene and its sun turned together, and the fixed scene under as many suns: what obliqueness costs.

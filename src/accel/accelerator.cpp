@@ -8,10 +8,12 @@
 #include <utility>
 
 #include "raygrain/error.h"
+#include "raygrain/rays.h"
 
 #include "accel/build_trees.h"
 #include "accel/search.h"
 #include "base/parallel.h"
+#include "base/timer.h"
 
 namespace raygrain {
 
@@ -23,6 +25,11 @@ struct Accelerator::Parts {
   AreaTable areas;
   Traversal traversal = Traversal::kWide;
   std::vector<Coverage> coverages = {};  // parallel to `locals`, or empty
+
+  /// Rays along an area that its coverage answers, whatever region they are in.
+  std::optional<Hit> nearest_covered(const Ray& ray) const;
+  std::optional<bool> any_covered(const Ray& ray) const;
+  void count_use(uint32_t area, const Ray& ray, AcceleratorCounters* counters) const;
 
   Hit nearest(const Ray& ray, AcceleratorCounters* counters) const;
   bool any(const Ray& ray, AcceleratorCounters* counters) const;
@@ -89,8 +96,10 @@ std::vector<SearchTree> make_searches(const TriangleMesh& mesh, std::span<const 
                                       Traversal traversal) {
   std::vector<SearchTree> searches;
   searches.reserve(locals.size());
-  for (const LocalTree& local : locals)
+  for (const LocalTree& local : locals) {
     searches.push_back(make_search_tree(mesh, local.tree, local.measure, traversal));
+    if (local.in_ray_space && traversal == Traversal::kWide) searches.back().add_ray_space(*local.in_ray_space);
+  }
   return searches;
 }
 
@@ -119,6 +128,20 @@ void for_chunks(size_t rays, unsigned threads, AcceleratorCounters* counters, co
     const std::lock_guard lock(mutex);
     counters->add(own);
   });
+}
+
+/// The least of three runs over the rays.
+template <class Trace>
+double nanoseconds_per_ray(std::span<const Ray> rays, const Trace& trace) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < 3; ++round) {
+    const Timer timer;
+    uint32_t sum = 0;  // so that no search is left out
+    for (const Ray& ray : rays) sum += trace(ray).triangle;
+    const double seconds = timer.seconds() + (sum == 0xfffffffeu ? 1e-12 : 0);
+    least = std::min(least, seconds * 1e9 / static_cast<double>(rays.size()));
+  }
+  return least;
 }
 
 /// Are all hits of the ray that can be nearer than `best` known, when those with t <= exit are?
@@ -161,15 +184,40 @@ Accelerator Accelerator::with_local_trees(std::vector<LocalTree> locals, const T
                                                          parts_->global, std::move(table), parts_->traversal}));
 }
 
+std::optional<Hit> Accelerator::Parts::nearest_covered(const Ray& ray) const {
+  for (const Coverage& coverage : coverages)
+    if (const auto hit = coverage.intersect(ray)) return hit;
+  return {};
+}
+
+std::optional<bool> Accelerator::Parts::any_covered(const Ray& ray) const {
+  for (const Coverage& coverage : coverages)
+    if (const auto hit = coverage.occluded(ray)) return hit;
+  return {};
+}
+
+void Accelerator::Parts::count_use(uint32_t area, const Ray& ray, AcceleratorCounters* counters) const {
+  const std::optional<FrameTree>& tree = searches[area].in_ray_space();
+  if (counters == nullptr || !tree) return;
+  const FrameUse use = tree->use_of(ray);
+  counters->columns += use == FrameUse::kColumn;
+  counters->cones += use == FrameUse::kCone;
+}
+
 Hit Accelerator::Parts::nearest(const Ray& ray, AcceleratorCounters* counters) const {
   if (counters != nullptr) ++counters->rays;
   if (!is_valid(ray)) {
     if (counters != nullptr) ++counters->invalid_rays;
     return {};
   }
+  if (const auto hit = nearest_covered(ray)) {
+    if (counters != nullptr) ++counters->covered;
+    return *hit;
+  }
   Hit best;
   AreaWalk walk(areas, ray, counters);
   while (const auto stage = walk.next()) {
+    count_use(stage->area, ray, counters);
     best = searches[stage->area].intersect(ray, best, walk.search_options(), local_counters(counters));
     if (!is_final(best, ray, stage->exit)) continue;
     if (counters != nullptr && is_hit(best)) ++counters->local_hits;
@@ -185,8 +233,13 @@ bool Accelerator::Parts::any(const Ray& ray, AcceleratorCounters* counters) cons
     if (counters != nullptr) ++counters->invalid_rays;
     return false;
   }
+  if (const auto hit = any_covered(ray)) {
+    if (counters != nullptr) ++counters->covered;
+    return *hit;
+  }
   AreaWalk walk(areas, ray, counters);
   while (const auto stage = walk.next()) {
+    count_use(stage->area, ray, counters);
     if (searches[stage->area].occluded(ray, walk.search_options(), local_counters(counters))) {
       if (counters != nullptr) ++counters->local_hits;  // wherever it is: any hit answers
       return true;
@@ -221,6 +274,40 @@ void Accelerator::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, 
     return parts_->global.wide()->occluded(rays, flags, threads);
   for_chunks(rays.size(), threads, counters,
              [&](size_t i, AcceleratorCounters* count) { flags[i] = parts_->any(rays[i], count) ? 1 : 0; });
+}
+
+Explanation Accelerator::explain(const AcceleratorCounters& counters, size_t rays) const {
+  if (rays == 0) throw Error(ErrorCode::kUsage, "explain", "0 rays", "Use at least 1");
+  Explanation explanation;
+  explanation.counters = counters;
+  explanation.global_bytes = raygrain::memory_bytes(global_tree()) + parts_->global.wide_bytes();
+  for (size_t i = 0; i < parts_->locals.size(); ++i) {
+    const LocalTree& local = parts_->locals[i];
+    const SearchTree& search = parts_->searches[i];
+    AreaReport report;
+    report.name = local.area.name;
+    report.triangles = local.tree->prims.size();
+    report.build_seconds = local.build_seconds;
+    report.memory_bytes = raygrain::memory_bytes(*local.tree) + search.wide_bytes();
+    if (i < parts_->coverages.size() && parts_->coverages[i].is_useful()) {
+      report.structures += "coverage, ";
+      report.build_seconds += parts_->coverages[i].build_seconds();
+      report.memory_bytes += parts_->coverages[i].memory_bytes();
+    }
+    if (const auto& tree = search.in_ray_space())
+      report.structures += std::string("tree in ray space (") + raygrain::name(tree->frame().kind) + "), ";
+    report.structures += "tree";
+    const std::vector<Ray> sample = cast_rays(AreaRays{local.area, RayStart::kRandomDepth}, rays, i + 1);
+    const double here = nanoseconds_per_ray(sample, [&](const Ray& ray) { return parts_->nearest(ray, nullptr); });
+    const double global =
+        nanoseconds_per_ray(sample, [&](const Ray& ray) { return parts_->global.intersect(ray, {}, {}, nullptr); });
+    report.area_nanoseconds = here;
+    report.global_nanoseconds = global;
+    report.break_even_rays =
+        global > here ? report.build_seconds * 1e9 / (global - here) : std::numeric_limits<double>::infinity();
+    explanation.areas.push_back(std::move(report));
+  }
+  return explanation;
 }
 
 std::span<const Coverage> Accelerator::coverages() const {
@@ -265,11 +352,14 @@ size_t Accelerator::wide_memory_bytes() const {
 void AcceleratorCounters::add(const AcceleratorCounters& other) {
   rays += other.rays;
   invalid_rays += other.invalid_rays;
+  covered += other.covered;
   areas_tested += other.areas_tested;
   areas_serving += other.areas_serving;
   local_searches += other.local_searches;
   local_hits += other.local_hits;
   continued += other.continued;
+  columns += other.columns;
+  cones += other.cones;
   global_searches += other.global_searches;
   local.add(other.local);
   global.add(other.global);

@@ -92,7 +92,7 @@ ManyAreas make_areas(const SceneTrees& scene, size_t count, size_t rays, uint64_
 }
 
 void set_ray_cells(Cells& cells, const ManyAreas& many, const TopLevelOptions& options) {
-  const Accelerator accelerator(many.mesh, many.locals, many.global, options);
+  const Accelerator accelerator(many.mesh, many.locals, many.global, options, Traversal::kBinary);
   AcceleratorCounters counters;
   TraceCounters alone;
   size_t mismatches = 0;

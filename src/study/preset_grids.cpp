@@ -144,7 +144,9 @@ StudyGrid corrected_grid(const StudySources& sources) {
     const bool is_plane = std::holds_alternative<PlaneArea>(area.area.shape);
     if (rays.spread == PointSpread::kAngle && (is_plane || !is_core(row))) return true;
     const bool is_half = area.variant == "15deg" || area.variant == "45deg";
-    return is_large(scene) && (rays.spread == PointSpread::kAngle || (is_half && !is_core(row)));
+    // A thousand sample rays for each of millions of boxes take minutes.
+    const bool is_sampled = row.recipe.measure == "SAMPLED" || row.visible;
+    return is_large(scene) && (rays.spread == PointSpread::kAngle || is_sampled || (is_half && !is_core(row)));
   };
   return grid;
 }

@@ -40,7 +40,8 @@ struct Everything {
     std::vector<LocalTree> locals;
     for (const StudyArea& area : areas)
       locals.push_back(build_local_tree(*mesh, area.area, recipe, default_registry()));
-    accelerator = std::make_unique<const Accelerator>(mesh, std::move(locals), global);
+    accelerator =
+        std::make_unique<const Accelerator>(mesh, std::move(locals), global, TopLevelOptions{}, Traversal::kBinary);
   }
 };
 

@@ -188,6 +188,7 @@ TEST(Accelerator, OtherLocalTreesShareMeshAndGlobalTree) {
 TEST(Accelerator, WideTreesCostMemoryAndSaveNodes) {
   const TriangleMesh mesh = random_mesh(500, 16);
   AcceleratorOptions options;
+  options.coverage = std::nullopt;
   const Accelerator wide(mesh, some_areas(), options);
   options.traversal = Traversal::kBinary;
   const Accelerator binary(mesh, some_areas(), options);
