@@ -48,6 +48,7 @@ AcceleratorOptions accelerator_options(const Options& options) {
   AcceleratorOptions result;
   result.local = parse_recipe(options.local, result.registry);
   result.global = parse_recipe(options.global, result.registry);
+  result.global.for_wide = result.global.builder != "paper";
   if (!options.quality.empty()) {
     if (options.global.find('@') != std::string::npos && options.global != kDefaultGlobal)
       fail_usage("--quality", "cannot be combined with a recipe that names its builder", "Leave one of them out");

@@ -90,7 +90,7 @@ Recipe check_tree_options(const TreeOptions& options, const Registry& registry) 
   if (options.quality.empty()) return recipe;
   if (options.recipe.find('@') != std::string::npos)
     fail_usage("--quality", "cannot be combined with a recipe that names its builder", "Leave one of them out");
-  recipe.builder = builder_name(parse_quality(options.quality));
+  set_quality(recipe, parse_quality(options.quality));
   return recipe;
 }
 

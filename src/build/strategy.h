@@ -15,6 +15,10 @@ struct Input {
   std::span<const Vec3> centroids;
 };
 
+/// The centroids, or where there are none the centers of the boxes, which `centers` then holds.
+std::span<const Vec3> centroids_or_centers(std::span<const Bounds> bounds, std::span<const Vec3> centroids,
+                                           std::vector<Vec3>& centers);
+
 /// Throws Error kUsage unless sizes agree, boxes are finite and not empty and centroids are finite; kLimit for more
 /// primitives than node indices can name.
 void check_input(const Input& input);

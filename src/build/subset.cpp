@@ -225,10 +225,11 @@ class SubsetBuilder {
 Bvh build_subset(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                  BuildLog* log) {
   validate(options);
-  const builder::Input input{bounds, centroids};
+  std::vector<Vec3> centers;
+  const builder::Input input{bounds, builder::centroids_or_centers(bounds, centroids, centers)};
   builder::check_input(input);
   if (bounds.size() < kLeast || !builder::ReferenceBuilder::serves(input, options.strategy))
-    return build_binned(bounds, centroids, options, log);
+    return build_binned(bounds, input.centroids, options, log);
   if (log) *log = {};
   const Timer timer;
   Bvh bvh = SubsetBuilder(input, options, log != nullptr).build(log);

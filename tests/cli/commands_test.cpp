@@ -25,6 +25,7 @@ TEST(Help, EveryCommandExplainsItself) {
                                                        {"trace"},
                                                        {"analyze"},
                                                        {"recipes"},
+                                                       {"report"},
                                                        {"scene"},
                                                        {"scene", "generate"},
                                                        {"scene", "convert"},

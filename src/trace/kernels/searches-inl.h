@@ -159,7 +159,7 @@ class Pending {
       if (kPruning && (found.sure >> lane & 1) != 0) bound = std::min(bound, found.latest[lane]);
     }
     if (size_ == kCapacity) bound = decide_apart(bound);
-    entries_[size_++] = {leaf.bytes, leaf.count, found.possible, size, earliest};
+    entries_[size_++] = {leaf.bytes, leaf.count, found.possible, found.sure, size, earliest};
     return bound;
   }
   /// Decides all of them; no hit beyond `bound` matters. Returns the new bound.
@@ -178,7 +178,7 @@ class Pending {
  private:
   struct Entry {
     const std::byte* bytes;  // of the leaf
-    uint32_t count, lanes;
+    uint32_t count, lanes, sure;
     float size, earliest;
   };
   static constexpr size_t kCapacity = 16;
@@ -186,20 +186,33 @@ class Pending {
   HWY_NOINLINE float decide_apart(float bound) { return decide(bound); }
 
   HWY_INLINE void decide(const Entry& entry) {
+    if ((entry.lanes & ~entry.sure) != 0)
+      decide_unsure(entry);
+    else
+      decide<true>(entry);
+  }
+  HWY_NOINLINE void decide_unsure(const Entry& entry) { decide<false>(entry); }
+
+  template <bool kSure>
+  HWY_INLINE void decide(const Entry& entry) {
     const WideLeaf leaf{entry.bytes, entry.count};
     for (size_t first = 0; first < kWidth; first += kDoubles) {
       const uint32_t lanes = entry.lanes >> first & ((1u << kDoubles) - 1);
       if (lanes == 0) continue;
       Verdicts verdicts;
-      confirm(*ray_, leaf, entry.size, first, verdicts);
+      confirm<kSure>(*ray_, leaf, entry.size, first, verdicts);
       for (uint32_t hits = verdicts.hit & lanes; hits != 0;) {
         const size_t i = take_lowest(hits);
         take({verdicts.t[i], verdicts.u[i], verdicts.v[i], leaf.id(first + i)});
       }
-      for (uint32_t unsure = verdicts.unsure & lanes; unsure != 0;) {
-        Hit hit;
-        if (confirm(leaf, first + take_lowest(unsure), *ray_, hit)) take(hit);
-      }
+      if ((verdicts.unsure & lanes) != 0) [[unlikely]]
+        decide_alone(leaf, (verdicts.unsure & lanes) << first);
+    }
+  }
+  HWY_NOINLINE void decide_alone(const WideLeaf& leaf, uint32_t lanes) {
+    while (lanes != 0) {
+      Hit hit;
+      if (confirm(leaf, take_lowest(lanes), *ray_, hit)) take(hit);
     }
   }
   HWY_INLINE void take(const Hit& hit) {
@@ -217,8 +230,9 @@ class Pending {
 template <bool kCounting, bool kPruning>
 Hit nearest(const WideTree& tree, const Ray& ray, const Hit& known, float skip_before, TraceCounters* counters) {
   BoxFilter boxes;
-  if (!boxes.prepare(tree, ray, skip_before))
-    return nearest_carefully(tree, ray, known, {skip_before, kPruning}, counters);
+  if (!(ray.tmin <= ray.tmax)) return known;
+  if (!boxes.prepare(tree, ray, skip_before)) [[unlikely]]
+    return is_valid(ray) ? nearest_carefully(tree, ray, known, {skip_before, kPruning}, counters) : known;
   TriangleFilter triangles;
   triangles.prepare(ray);
   Pending<kCounting> pending(ray, known, counters);
@@ -258,7 +272,9 @@ Hit nearest(const WideTree& tree, const Ray& ray, const Hit& known, float skip_b
 template <bool kCounting, bool kPruning>
 bool any(const WideTree& tree, const Ray& ray, float skip_before, TraceCounters* counters) {
   BoxFilter boxes;
-  if (!boxes.prepare(tree, ray, skip_before)) return any_carefully(tree, ray, {skip_before, kPruning}, counters);
+  if (!(ray.tmin <= ray.tmax)) return false;
+  if (!boxes.prepare(tree, ray, skip_before)) [[unlikely]]
+    return is_valid(ray) && any_carefully(tree, ray, {skip_before, kPruning}, counters);
   TriangleFilter triangles;
   triangles.prepare(ray);
   bool hit_something = false;
