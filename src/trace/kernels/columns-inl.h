@@ -32,7 +32,7 @@ struct Block {
   Vec3 points[kBlock + 16];
 };
 
-using FloatTag = hn::CappedTag<float, 16>;
+using FloatTag = hn::CappedTag<float, 8>;
 using Floats = hn::Vec<FloatTag>;
 
 HWY_INLINE Floats turn(const CoverageGrid& grid, size_t row, Floats x, Floats y, Floats z) {

@@ -8,6 +8,7 @@
 #endif
 
 #include <array>
+#include <cmath>
 
 #include <hwy/cache_control.h>
 
@@ -334,6 +335,12 @@ void ask(const CoverageGrid& grid, const ColumnBatch& batch, const Question& que
   question.finish();
 }
 
+/// Is nothing where the column is?
+inline bool is_beside(const CoverageGrid& grid, const SingleColumn& c) {
+  const bool inside = c.x >= grid.x_lo && c.x <= grid.x_hi && c.y >= grid.y_lo && c.y <= grid.y_hi;
+  return grid.is_free_beside && !inside && std::abs(c.x) <= 0x1p60f && std::abs(c.y) <= 0x1p60f;
+}
+
 /// The cell of one column; false for columns that are not the grid's.
 inline bool find_cell(const CoverageGrid& grid, const SingleColumn& c, uint32_t& tile, uint32_t& cell) {
   if (!(c.x >= grid.x_lo && c.x <= grid.x_hi && c.y >= grid.y_lo && c.y <= grid.y_hi)) return false;
@@ -347,6 +354,7 @@ inline bool find_cell(const CoverageGrid& grid, const SingleColumn& c, uint32_t&
 
 inline std::optional<bool> single_any(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray) {
   uint32_t tile = 0, number = 0;
+  if (is_beside(grid, column)) return false;
   if (!find_cell(grid, column, tile, number)) return {};
   const CoverageCell* cell = &grid.cells[number];
   if (code_of(grid.tiles[tile], column.end) <= cell->far) return {};
@@ -366,6 +374,7 @@ inline std::optional<bool> single_any(const CoverageGrid& grid, const SingleColu
 
 inline std::optional<Hit> single_nearest(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray) {
   uint32_t tile = 0, number = 0;
+  if (is_beside(grid, column)) return Hit{};
   if (!find_cell(grid, column, tile, number)) return {};
   const CoverageCell* cell = &grid.cells[number];
   if (code_of(grid.tiles[tile], column.s) <= cell->far && column.s < kInf) return {};

@@ -172,11 +172,13 @@ struct ConeTriangles {
     const FrameVec steep = hn::Add(hn::Abs(p), hn::Abs(q)), size = hn::Abs(stretch);
     const FrameVec own = hn::MulAdd(steep, all(error), lanes.field(FrameLeaf::kError));
     const FrameVec doubt = hn::MulAdd(hn::Mul(steep, all(slope)), size, all(2));
-    const FrameVec radius = hn::MulAdd(hn::Mul(own, size), all(1 + 0x1p-18f),
-                                       hn::Mul(all(0x1p-21f), hn::MulAdd(hn::Abs(away), doubt, all(std::abs(middle)))));
+    const FrameVec spread = hn::Mul(own, size);
+    const FrameVec rounding = hn::MulAdd(doubt, hn::Add(hn::Abs(away), spread), all(std::abs(middle)));
+    const FrameVec radius = hn::MulAdd(spread, all(1 + 0x1p-18f), hn::Mul(all(0x1p-20f), rounding));
     // Comparisons with what is not a number are false, and nothing is sure then.
     const FrameVec most = all(2 * half), top = all(middle + half), bottom = all(middle - half);
-    const FrameMask is_known = hn::Le(radius, most), is_low = hn::Le(z, top), is_high = hn::Le(bottom, z);
+    const FrameMask is_known = hn::And(hn::Le(radius, most), hn::Le(doubt, all(0x1p16f)));
+    const FrameMask is_low = hn::Le(z, top), is_high = hn::Le(bottom, z);
     const FrameVec z_radius = hn::IfThenElse(is_known, radius, most);
     const FrameVec z_here = hn::IfThenElse(is_low, hn::IfThenElse(is_high, z, bottom), top);
     const FrameVec x_here = hn::MulAdd(z_here, all(slope_x), all(x0)),
