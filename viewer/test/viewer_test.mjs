@@ -1,5 +1,6 @@
-// The viewer in headless Chromium, as a reader has it: node test/viewer_test.mjs PROGRAM FOLDER [--quick]. First the page's arithmetic
-// against the program, then every feature; fails with the first thing that is not as it should be; leaves pictures in FOLDER.
+// The viewer in headless Chromium, as a reader has it: node test/viewer_test.mjs PROGRAM FOLDER [--smoke | --quick]. First the page's
+// arithmetic against the program, then every feature; fails with the first thing that is not as it should be; leaves pictures in FOLDER.
+// --smoke: nodes and rays alone; --quick: all but the large scenes.
 import assert from 'node:assert/strict';
 import { execFileSync, spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
@@ -11,7 +12,8 @@ import { SOFTWARE_GL, visit as visitPage, WITHOUT_GPU } from '../../scripts/brow
 const here = dirname(fileURLToPath(import.meta.url));
 const program = resolve(process.argv[2] ?? join(here, '../../build/release/bin/raygrain'));
 const folder = resolve(process.argv[3] ?? join(here, '../../build/viewer-test'));
-const quick = process.argv.includes('--quick');
+const smoke = process.argv.includes('--smoke');
+const quick = smoke || process.argv.includes('--quick');
 const shared = join(here, '../../../shared/scenes');
 const desktop = { width: 1300, height: 850 };
 const SUN = ['--sun', '0.35,-0.8,0.48'];
@@ -262,7 +264,10 @@ async function checkRays(tab, areas, scene) {
     await shot(tab, `rays-${area}`);
   }
   await choose(tab, 'Tree', '0');
+  await choose(tab, 'Coloured by', 'visits');
   await tab.waitForTimeout(300);
+  assert.match(await textOf(tab, '.legend .ends'), /^0\s+rays that meet the box\s+\d{2,}$/, 'boxes are coloured by visits');
+  await shot(tab, 'visits');
   const stage = await tab.locator('.stage canvas').boundingBox();
   for (let x = 200; x < 900; x += 6) {
     await tab.mouse.move(stage.x + x, stage.y + 300);
@@ -461,6 +466,16 @@ writeFileSync(
 );
 const city = makePage('city.html', scene, '--areas', areas, '--recipes', 'SAH+LSPH,PAH+ALL');
 
+if (smoke) {
+  await visit(city, { colorScheme: 'light' }, async (tab) => {
+    await choose(tab, 'Boxes', 'level');
+    await tab.getByLabel('Level', { exact: true }).fill('3');
+    await checkNode(tab);
+    await checkRays(tab, areas, scene);
+  });
+  console.log("viewer: pages open, nodes are picked, costs are the analyzer's");
+  process.exit(0);
+}
 await visit(city, { colorScheme: 'light' }, async (tab) => {
   await shot(tab, 'first');
   await checkScene(tab);
