@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct Options {
   CommonOptions common;
-  std::vector<std::string> results;
+  std::vector<std::string> results, views;
   std::string page, markdown, page_template;
   bool plain = false;
 };
@@ -39,8 +39,37 @@ void save(const std::string& path, const std::string& text) {
   write_file_atomically(path, [&](std::ostream& out) { out << text; });
 }
 
+/// A path as part of an address.
+std::string escaped_path(const std::string& path) {
+  std::string text;
+  for (const char c : path) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    text += plain || std::string_view("/._~-").find(c) != std::string_view::npos
+                ? std::string(1, c)
+                : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return text;
+}
+
+/// The report with links from a file in `path`'s folder to the views.
+StudyReport with_links(StudyReport report, const std::vector<std::string>& views, const std::string& path) {
+  const fs::path folder = fs::absolute(path).parent_path();
+  for (const std::string& view : views)
+    report.links.emplace_back("See " + fs::path(view).stem().string(),
+                              escaped_path(fs::absolute(view).lexically_relative(folder).generic_string()));
+  return report;
+}
+
+void check_views(const std::vector<std::string>& views) {
+  std::error_code ignored;
+  for (const std::string& view : views)
+    if (!fs::is_regular_file(view, ignored))
+      throw Error(ErrorCode::kNotFound, view, "there is no such page", "Make it with raygrain view SCENE --out FILE");
+}
+
 /// The page, and what to tell of it.
-std::string make_page(const Options& options, const StudyReport& report) {
+std::string make_page(const Options& options, const StudyReport& plain_report) {
+  const StudyReport report = with_links(plain_report, options.views, options.page);
   constexpr const char* kNote =
       "Static charts. `make report-page` builds the interactive page (it needs node and npm); `raygrain report` then "
       "fills it instead.";
@@ -66,7 +95,7 @@ void make_markdown(const Options& options, const StudyReport& report, Progress& 
     save_png(chart_image(chart.panels[panel]), (pictures / name).string());
     return folder + "/" + name;
   };
-  save(options.markdown, report_markdown(report, picture));
+  save(options.markdown, report_markdown(with_links(report, options.views, options.markdown), picture));
 }
 
 /// Figure by figure, one line each: what came out.
@@ -87,6 +116,7 @@ int make_report(const Options& options) {
   const Output output(options.common);
   require_writable(options.page);
   require_writable(options.markdown);
+  check_views(options.views);
   std::vector<ResultTable> tables;
   for (const std::string& path : options.results) tables.push_back(load_results(results_file(path)));
   const StudyReport report = make_study_report(tables);
@@ -113,6 +143,7 @@ Action declare_report(Arguments& arguments) {
   arguments.file("--out", "report.html", options->page, "Write the report as one self-contained page");
   arguments.file("--markdown", "FILE", options->markdown,
                  "Write it as Markdown, too, with PNG charts in a folder beside the file");
+  arguments.list("--views", "FILE,...", options->views, "Link these pages of raygrain view");
   arguments.flag("--static", options->plain, "Make the page without scripts: SVG charts only");
   arguments.file("--template", "FILE", options->page_template,
                  "The built interactive page to fill [the one beside the program]");

@@ -34,6 +34,7 @@ struct StudyReport {
   std::string title;
   std::vector<std::pair<std::string, std::string>> facts;  // what was measured, and on what
   std::vector<ChartSection> sections;
+  std::vector<std::pair<std::string, std::string>> links = {};  // to pages that show what was measured: name, address
 };
 
 /// Every chart that the tables hold values for. Recipes that raygrain does not know appear like its own. The same

@@ -104,6 +104,8 @@ export function buildPage(root: HTMLElement, report: Report, themeButton: HTMLEl
   document.title = report.title;
   const facts = element('dl', { class: 'facts' });
   for (const fact of report.facts) facts.append(element('dt', {}, fact.name), element('dd', {}, fact.text));
+  const links = element('ul', { class: 'links' });
+  for (const link of report.links) links.append(element('li', {}, element('a', { href: link.address }, link.name)));
   root.append(
     element('header', {}, element('h1', {}, report.title), themeButton),
     contents(report),
@@ -112,7 +114,7 @@ export function buildPage(root: HTMLElement, report: Report, themeButton: HTMLEl
       { class: 'body' },
       summary(report),
       ...report.sections.map((section) => sectionNode(section, views)),
-      element('section', { class: 'measured' }, element('h2', {}, 'What was measured'), facts),
+      element('section', { class: 'measured' }, element('h2', {}, 'What was measured'), facts, report.links.length > 0 && links),
     ),
   );
   return views;

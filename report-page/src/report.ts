@@ -53,6 +53,8 @@ export interface Section {
 export interface Report {
   title: string;
   facts: { name: string; text: string }[];
+  /** Pages that show what was measured. */
+  links: { name: string; address: string }[];
   sections: Section[];
 }
 

@@ -75,6 +75,7 @@ std::string report_markdown(const StudyReport& report,
                             const std::function<std::string(const Chart&, size_t panel)>& picture) {
   std::string text = "# " + plain(report.title) + "\n\n";
   for (const auto& [name, fact] : report.facts) text += fmt::format("- **{}**: {}\n", plain(name), plain(fact));
+  for (const auto& [name, address] : report.links) text += fmt::format("- [{}]({})\n", plain(name), address);
   for (const ChartSection& section : report.sections) {
     text += fmt::format("\n## {}\n\n{}\n", plain(section.title), plain(section.text));
     for (const Chart& chart : section.charts) {

@@ -60,6 +60,8 @@ std::string static_page(const StudyReport& report, const std::string& note) {
   if (!note.empty()) text += "<p class=\"note\">" + escaped(note) + "</p>\n";
   for (const auto& [name, fact] : report.facts)
     text += "<p class=\"note\"><b>" + escaped(name) + "</b>: " + escaped(fact) + "</p>\n";
+  for (const auto& [name, address] : report.links)
+    text += "<p class=\"note\"><a href=\"" + escaped(address) + "\">" + escaped(name) + "</a></p>\n";
   for (const ChartSection& section : report.sections) {
     text += fmt::format("<section id=\"{}\"><h2>{}</h2>\n<p>{}</p>\n", section.id, escaped(section.title),
                         escaped(section.text));

@@ -70,15 +70,19 @@ Json chart_json(const Chart& chart) {
 }  // namespace
 
 std::string study_report_json(const StudyReport& report) {
-  Json facts = Json::array(), sections = Json::array();
+  Json facts = Json::array(), links = Json::array(), sections = Json::array();
   for (const auto& [name, text] : report.facts) facts.push_back({{"name", name}, {"text", text}});
+  for (const auto& [name, address] : report.links) links.push_back({{"name", name}, {"address", address}});
   for (const ChartSection& section : report.sections) {
     Json charts = Json::array();
     for (const Chart& chart : section.charts) charts.push_back(chart_json(chart));
     sections.push_back(
         {{"id", section.id}, {"title", section.title}, {"text", section.text}, {"charts", std::move(charts)}});
   }
-  const Json json{{"title", report.title}, {"facts", std::move(facts)}, {"sections", std::move(sections)}};
+  const Json json{{"title", report.title},
+                  {"facts", std::move(facts)},
+                  {"links", std::move(links)},
+                  {"sections", std::move(sections)}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
