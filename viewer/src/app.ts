@@ -1,5 +1,6 @@
 // What the page holds and does; panels and keys only ask and tell it.
 import type { Area } from './area';
+import { begin, end } from './busy';
 import { inkColour, randomColour, ROLE_COLOURS, type Colour } from './colours';
 import { castRays, measureRays, type RayStats } from './cost';
 import type { ViewData } from './data';
@@ -108,6 +109,15 @@ export class App {
 
   /** Makes everything that depends on what changed anew. */
   private async apply(changed: Set<Key>): Promise<void> {
+    begin();
+    try {
+      await this.follow(changed);
+    } finally {
+      end();
+    }
+  }
+
+  private async follow(changed: Set<Key>): Promise<void> {
     const any = (...keys: Key[]): boolean => keys.some((key) => changed.has(key));
     if (any('tree', 'other', 'compare')) await this.loadPanes();
     if (any('mesh', 'wireframe', 'members', 'tree')) this.applyMesh();

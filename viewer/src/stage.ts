@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import type { Area } from './area';
+import { begin, end } from './busy';
 import { center, diagonal, type Box, type Vec } from './vec';
 
 THREE.ColorManagement.enabled = false;
@@ -101,6 +102,8 @@ export class Stage {
   private setMoving(moving: boolean): void {
     if (this.moving === moving) return;
     this.moving = moving;
+    if (moving) begin();
+    else setTimeout(end);
     this.onMove(moving);
     this.requestDraw();
   }
@@ -194,9 +197,11 @@ export class Stage {
   requestDraw(): void {
     if (this.wanted) return;
     this.wanted = true;
+    begin();
     requestAnimationFrame(() => {
       this.wanted = false;
       this.draw();
+      end();
     });
   }
 

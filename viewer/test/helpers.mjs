@@ -23,8 +23,20 @@ export const shot = (tab, name) => tab.screenshot({ path: join(folder, `${name}.
 export const textOf = (tab, selector) => tab.locator(selector).innerText();
 export const frames = (tab) => tab.evaluate(() => Number(document.querySelector('.stage canvas').dataset.frames));
 
+/** Waits until everything that was asked for is done and drawn. */
+export async function settled(tab) {
+  await tab.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await tab.waitForFunction(() => document.documentElement.dataset.busy === 'false', null, { timeout: 30_000 });
+}
+
 /** Does something and waits until it is drawn. */
 export async function drawn(tab, act) {
+  await act();
+  await settled(tab);
+}
+
+/** Does something and waits for the next picture, whatever it shows. */
+export async function redrawn(tab, act) {
   const before = await frames(tab);
   await act();
   await tab.waitForFunction((n) => Number(document.querySelector('.stage canvas').dataset.frames) > n, before, { timeout: 20_000 });

@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import { changedShare, choose, drawn, folder, numbers, panel, pixelsOf, rayNumbers, run, shot, textOf } from './helpers.mjs';
+import { changedShare, choose, drawn, folder, numbers, panel, pixelsOf, rayNumbers, run, settled, shot, textOf } from './helpers.mjs';
 
 /** Numbers of the panel are those of `raygrain analyze`. */
 export async function checkRays(tab, areas, scene) {
@@ -16,13 +16,13 @@ export async function checkRays(tab, areas, scene) {
     const recipe = tree ? 'PAH+ALL' : 'SAH+LSPH';
     const row = JSON.parse(run('analyze', scene, '--areas', areas, '--area', area, '--recipe', recipe, '--rays', '500', '--seed', '11', '--json', '-')).rows[0];
     for (const name of ['real_cost', 'pruned_cost', 'inner_hits', 'leaf_hits', 'leaf_triangles']) assert.equal(page[name][0], row[name], `${area} ${name}`);
-    await tab.waitForTimeout(300);
+    await settled(tab);
     assert.ok((await pixelsOf(tab, [255, 170, 40])) > 50, 'rays are drawn');
     await shot(tab, `rays-${area}`);
   }
   await choose(tab, 'Tree', '0');
   await choose(tab, 'Coloured by', 'visits');
-  await tab.waitForTimeout(300);
+  await settled(tab);
   assert.match(await textOf(tab, '.legend .ends'), /^0\s+rays that meet the box\s+\d{2,}$/, 'boxes are coloured by visits');
   await shot(tab, 'visits');
   const stage = await tab.locator('.stage canvas').boundingBox();
@@ -51,7 +51,7 @@ export async function checkTop(tab) {
   await choose(tab, 'Boxes', 'none');
   await panel(tab, 'top').locator('summary').click();
   await choose(tab, 'Cells', 'leaves');
-  await tab.waitForTimeout(500);
+  await settled(tab);
   await shot(tab, 'top-leaves');
   await drawn(tab, () => choose(tab, 'Cells', 'wireframe'));
   await tab.locator('.stage canvas').click({ position: { x: 480, y: 450 } });
@@ -69,7 +69,7 @@ export async function checkCost(tab) {
   await choose(tab, 'Left', '0');
   await choose(tab, 'Right', '1');
   await choose(tab, 'Seen from', '0');
-  await tab.waitForTimeout(200);
+  await settled(tab);
   await ready();
   const means = (await tab.locator('.cost .names').getAttribute('data-means')).split(',').map(Number);
   assert.ok(means[0] > 2 && means[1] > 2 && means[0] !== means[1], `mean costs ${means}`);
@@ -83,14 +83,14 @@ export async function checkCost(tab) {
   assert.match(await textOf(tab, '#cost-said'), /Pixel \d+, \d+: [\d.]+ and [\d.]+/);
   await shot(tab, 'cost-wiper');
   await choose(tab, 'Show', 'beside');
-  await tab.waitForTimeout(200);
+  await settled(tab);
   await shot(tab, 'cost-beside');
   await choose(tab, 'Show', 'difference');
-  await tab.waitForTimeout(200);
+  await settled(tab);
   assert.equal(await tab.locator('.cost canvas.right').isVisible(), false);
   await shot(tab, 'cost-difference');
   await tab.getByLabel('nearest hit prunes').uncheck();
-  await tab.waitForTimeout(200);
+  await settled(tab);
   await ready();
   const full = (await tab.locator('.cost .names').getAttribute('data-means')).split(',').map(Number);
   assert.ok(full[0] > means[0] && full[1] > means[1], 'without pruning rays pay more');
@@ -109,7 +109,7 @@ export async function checkCompare(tab) {
   assert.equal((await numbers(tab, '#tree-values'))['nodes'].length, 2);
   await tab.locator('.stage canvas').click({ position: { x: 700, y: 470 } });
   await tab.locator('#node-numbers').waitFor();
-  await tab.waitForTimeout(400);
+  await settled(tab);
   await shot(tab, 'compare');
   await tab.keyboard.press('c');
   await tab.waitForFunction(() => document.querySelectorAll('.pane-names span').length === 1);
@@ -133,7 +133,7 @@ export async function checkRest(tab) {
   await tab.goto('about:blank');
   await tab.goto(link);
   await tab.waitForFunction(() => document.documentElement.dataset.ready === 'true');
-  await tab.waitForTimeout(500);
+  await settled(tab);
   assert.equal(await tab.getByLabel('Level', { exact: true }).inputValue(), '5', 'the link restores the level');
   const share = await changedShare(tab, before);
   assert.ok(share < 0.002, `the link restores the picture, but for ${share} of its pixels`);
@@ -141,7 +141,7 @@ export async function checkRest(tab) {
   const light = await paper();
   await tab.keyboard.press('d');
   await tab.keyboard.press('d');
-  await tab.waitForTimeout(300);
+  await settled(tab);
   assert.notEqual(await paper(), light, 'd makes it dark');
   await shot(tab, 'dark');
 }

@@ -1,7 +1,7 @@
 // Scene, areas, trees and nodes.
 import assert from 'node:assert/strict';
 import { join } from 'node:path';
-import { changedShare, choose, drawn, folder, numbers, panel, pixelsOf, shot, textOf } from './helpers.mjs';
+import { changedShare, choose, drawn, folder, numbers, panel, pixelsOf, settled, shot, textOf } from './helpers.mjs';
 
 export async function checkScene(tab) {
   const facts = await numbers(tab, '#scene-facts');
@@ -33,7 +33,7 @@ export async function checkScene(tab) {
   });
   await moved(zoomed, 'the right button pans');
   await drawn(tab, () => tab.getByRole('button', { name: 'Fit' }).click());
-  await tab.waitForTimeout(400);
+  await settled(tab);
   assert.ok((await changedShare(tab, first)) < 0.002, 'Fit goes back');
   const edges = await pixelsOf(tab, [40, 44, 52]);
   await drawn(tab, () => tab.getByLabel('wireframe', { exact: true }).check());
@@ -47,7 +47,7 @@ export async function checkScene(tab) {
   await shot(tab, 'section');
   await drawn(tab, () => choose(tab, 'Section across', '0'));
   await drawn(tab, () => choose(tab, 'Up axis', '2'));
-  await tab.waitForTimeout(400);
+  await settled(tab);
   await moved(first, 'another axis is up');
   await drawn(tab, () => choose(tab, 'Up axis', '1'));
   await drawn(tab, () => tab.getByLabel('shaded', { exact: true }).uncheck());
@@ -92,20 +92,20 @@ export async function checkTrees(tab) {
   await panel(tab, 'tree').locator('details summary').click();
   assert.equal(await count(), value('nodes'), 'all boxes');
   await choose(tab, 'Boxes', 'leaves');
-  await tab.waitForTimeout(200);
+  await settled(tab);
   assert.equal(await count(), value('leaves'), 'the leaves');
   await choose(tab, 'Coloured by', 'random');
   await tab.getByLabel('opaque boxes').check();
-  await tab.waitForTimeout(500);
+  await settled(tab);
   await shot(tab, 'leaves');
   await tab.getByLabel('opaque boxes').uncheck();
   await choose(tab, 'Boxes', 'level');
   await tab.getByLabel('Level', { exact: true }).fill('3');
-  await tab.waitForTimeout(200);
+  await settled(tab);
   assert.equal(await count(), 8, 'a level');
   for (const colour of ['depth', 'measure', 'overlap', 'visits']) {
     await choose(tab, 'Coloured by', colour);
-    await tab.waitForTimeout(300);
+    await settled(tab);
     assert.ok((await tab.locator('.legend .bar').count()) >= 1, `${colour} has a scale`);
     await shot(tab, `colour-${colour}`);
   }
@@ -119,7 +119,7 @@ export async function checkNode(tab) {
   await tab.locator('#node-numbers').waitFor();
   const leaf = await numbers(tab, '#node-numbers');
   assert.equal(leaf['Triangles'].length, 1, 'a click on a surface chooses its leaf');
-  await tab.waitForTimeout(400);
+  await settled(tab);
   assert.ok((await pixelsOf(tab, [230, 230, 0])) > 20, 'its triangle is yellow');
   await shot(tab, 'leaf');
   await choose(tab, 'Boxes', 'level');
@@ -132,7 +132,7 @@ export async function checkNode(tab) {
   assert.equal(sum(box['Triangles']), 0);
   for (const name of ['Surface area', 'Projected area', 'P (surface area)', 'P (projected area)', 'Expected cost', 'Overlap with sibling', 'Split across', 'Quality of the axis'])
     assert.match(box[name][0], /^[-\dxyz]/, name);
-  await tab.waitForTimeout(300);
+  await settled(tab);
   for (const [role, colour] of [['parent', [64, 200, 64]], ['left', [230, 60, 60]], ['right', [70, 110, 255]]]) assert.ok((await pixelsOf(tab, colour)) > 50, `${role} is drawn`);
   assert.equal(await tab.locator('.hulls .left').count(), 1);
   assert.equal(await tab.locator('.hulls .parent').count(), 1);

@@ -6,7 +6,7 @@ import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { WITHOUT_GPU } from '../../scripts/browser.mjs';
-import { choose, desktop, drawn, folder, here, makePage, program, shot, visit } from './helpers.mjs';
+import { choose, desktop, folder, here, makePage, program, redrawn, settled, shot, visit } from './helpers.mjs';
 import { checkCompare, checkCost, checkRays, checkRest, checkTop } from './ray_checks.mjs';
 import { checkAreas, checkNode, checkScene, checkTrees } from './scene_checks.mjs';
 
@@ -59,12 +59,12 @@ async function checkLarge(name, megabytes, seconds) {
     const redraws = [];
     for (let i = 1; i <= 5; ++i) {
       const began = Date.now();
-      await drawn(tab, () => tab.mouse.move(480 + 20 * i, 450));
+      await redrawn(tab, () => tab.mouse.move(480 + 20 * i, 450));
       await tab.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
       redraws.push(Date.now() - began);
     }
     await tab.mouse.up();
-    await tab.waitForTimeout(2500);
+    await settled(tab);
     await shot(tab, name);
     const redraw = redraws.sort((a, b) => a - b)[2];
     console.log(`${name}: ${size.toFixed(1)} MB, ready after ${time.toFixed(1)} s, a drag is redrawn in ${redraw} ms (median of 5)`);
