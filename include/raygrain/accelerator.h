@@ -5,11 +5,13 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "raygrain/area.h"
 #include "raygrain/bvh.h"
 #include "raygrain/coverage.h"
+#include "raygrain/frame_tree.h"
 #include "raygrain/mesh.h"
 #include "raygrain/registry.h"
 #include "raygrain/top_level.h"
@@ -32,13 +34,21 @@ enum class Traversal {
   kBinary,  // Bvh: what builders return and costs are defined on; for studies
 };
 
+/// The space that local trees are built in. Answers are the same.
+enum class LocalSpace {
+  kWorld,  // the world's axes, as in the paper
+  kRay,    // the area's ray space, besides: rays that a frame serves take the tree there
+};
+
 struct AcceleratorOptions {
   Recipe local{"PAH", "ALL", "binned", {}};         // of each area's tree
   Recipe global{"SAH", "ALL", "binned", {}, true};  // of the tree that answers all other rays
   std::optional<Quality> quality;                   // of the global tree: replaces its recipe's builder
   bool reinsert = false;                            // improve the global tree by reinsertion, under its own measure
   Traversal traversal = Traversal::kWide;
-  std::optional<Isa> isa;  // of wide trees; default_isa() without one
+  LocalSpace space = LocalSpace::kWorld;
+  std::optional<FrameKind> frame;  // of areas that it suits; the others, and without one: the cheapest by prediction
+  std::optional<Isa> isa;          // of wide trees; default_isa() without one
   /// Of each area, over all triangles that its rays can meet: answers batches of rays that share its direction or its
   /// point. Nothing, and under Traversal::kBinary: none is built.
   std::optional<CoverageOptions> coverage = CoverageOptions{};
@@ -58,7 +68,9 @@ struct LocalTree {
   std::shared_ptr<const Bvh> tree;
   BuildLog log;
   double predicted_cost = 0;
-  RayMeasure measure = {};  // the tree's own; decides how its wide form is collapsed
+  RayMeasure measure = {};                               // the tree's own; decides how its wide form is collapsed
+  std::optional<FrameTree> in_ray_space = std::nullopt;  // LocalSpace::kRay
+  double build_seconds = 0;
 };
 
 /// What happened while rays were traced (sums). Under Traversal::kWide the nodes and boxes of `local` and `global` are
@@ -66,11 +78,14 @@ struct LocalTree {
 struct AcceleratorCounters {
   uint64_t rays = 0;
   uint64_t invalid_rays = 0;     // misses by definition
+  uint64_t covered = 0;          // answered by an area's coverage; nothing below is counted for them
   uint64_t areas_tested = 0;     // candidates from the top level that were asked whether they serve the ray
   uint64_t areas_serving = 0;    // ... and do
   uint64_t local_searches = 0;   // local trees searched
   uint64_t local_hits = 0;       // rays that ended with an accepted local hit
   uint64_t continued = 0;        // rays that left one area and entered the next
+  uint64_t columns = 0;          // of the local searches: in ray space, as columns
+  uint64_t cones = 0;            // ... as cones
   uint64_t global_searches = 0;  // rays that needed the global tree
   TraceCounters local, global;   // work in local trees and in the global tree
 
@@ -78,13 +93,35 @@ struct AcceleratorCounters {
   void add(const AcceleratorCounters& other);
 };
 
+/// What an area costs and saves. Times are measured, on rays of the area that explain() casts.
+struct AreaReport {
+  std::string name;
+  size_t triangles = 0;                                 // of the local tree; some may be there more than once
+  double build_seconds = 0;                             // of everything that the area has
+  size_t memory_bytes = 0;                              // ... likewise
+  std::string structures;                               // e.g. "coverage, tree in ray space (shear_y), tree"
+  double area_nanoseconds = 0, global_nanoseconds = 0;  // a ray through this accelerator, and through its global tree
+  /// Rays after which the area's structures have paid for their build; infinity where they save nothing.
+  double break_even_rays = 0;
+};
+
+struct Explanation {
+  std::vector<AreaReport> areas;
+  size_t global_bytes = 0;
+  AcceleratorCounters counters;  // as handed in
+};
+
+/// Lines for people.
+std::string to_text(const Explanation& explanation);
+
 /// Immutable, cheap to copy (shared inside), safe to use from many threads. Without areas every ray goes to the global
 /// tree.
 ///
-/// A ray is answered by the local tree of the area that serves it at the lowest predicted cost. A local hit counts only
-/// at or before the exit from that area's region; otherwise the search goes on in the next area that holds the exit
-/// point and serves the ray there, at last in the global tree. Results equal the brute-force oracle's, bit for bit.
-/// Rays with tmin < 0 go straight to the global tree; invalid rays are misses and are counted.
+/// A ray along an area that its coverage can answer is answered there. Another is answered by the local tree of the
+/// area that serves it at the lowest predicted cost. A local hit counts only at or before the exit from that area's
+/// region; otherwise the search goes on in the next area that holds the exit point and serves the ray there, at last in
+/// the global tree. Results equal the brute-force oracle's, bit for bit. Rays with tmin < 0 go straight to the global
+/// tree; invalid rays are misses and are counted.
 class Accelerator {
  public:
   /// Throws Error: kBadMesh, kBadArea (naming the area), kUsage (unknown recipe, option out of range), kBadHeuristic.
@@ -127,6 +164,10 @@ class Accelerator {
 
   /// One per area, or none.
   std::span<const Coverage> coverages() const;
+
+  /// Says which areas there are, what each costs and saves, and where rays went: pass the counters of your last batch.
+  /// Casts and traces `rays` rays (> 0) for each area, seeded; only times differ from call to call.
+  Explanation explain(const AcceleratorCounters& counters = {}, size_t rays = 4096) const;
 
   const TriangleMesh& mesh() const;
   std::span<const LocalTree> local_trees() const;

@@ -88,7 +88,8 @@ struct FrameBuildOptions {
 };
 
 /// Builds the tree over these triangles (ids), as far as they lie in the frame's domain. Nothing where a tree in
-/// this frame cannot be made (see FrameTree).
+/// this frame cannot be made (see FrameTree). `cost` gets the estimated cost of all rays of the distribution, up to a
+/// factor that does not depend on the frame: less is better.
 std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr<const TriangleCorners> corners,
                                           std::span<const uint32_t> triangles, const FrameBuildOptions& options = {},
                                           double* cost = nullptr);

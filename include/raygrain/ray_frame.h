@@ -88,7 +88,7 @@ FrameFit make_segment(const RayFrame& frame, const Ray& ray, std::array<float, 2
 
 /// A segment as a box: what queries of columns read. The ray's part between the depths lies in `box`; the points within
 /// `radius` of (x, y), in both coordinates, hold the box's xy extent.
-struct Column {
+struct FrameColumn {
   Bounds box;
   float x = 0, y = 0, radius = 0;
   float sure_lo = 0, sure_hi = 0;  // every depth in between is one of the ray's, strictly inside [tmin, tmax]
@@ -96,7 +96,7 @@ struct Column {
 };
 
 /// Rounded outward (sure_lo and sure_hi inward). Good for any slope; tight where the ray runs along z.
-Column to_column(const FrameSegment& segment);
+FrameColumn to_column(const FrameSegment& segment);
 
 /// |slope| times half the depth of the segment: how far the ray leaves its middle line.
 double drift(const FrameSegment& segment);

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "raygrain/bvh.h"
 #include "raygrain/mesh.h"
@@ -40,5 +42,8 @@ Hit intersect(const Bvh& bvh, const TriangleMesh& mesh, const Ray& ray, Hit know
 /// Is there any hit in [tmin, tmax]?
 bool occluded(const Bvh& bvh, const TriangleMesh& mesh, const Ray& ray, const SearchOptions& options = {},
               TraceCounters* counters = nullptr);
+
+/// The same rays, each ended (tmax) at its nearest hit: sample rays for measures that know that rays stop.
+std::vector<Ray> end_at_hits(std::span<const Ray> rays, const Bvh& bvh, const TriangleMesh& mesh);
 
 }  // namespace raygrain

@@ -1,6 +1,7 @@
 #include "raygrain/accelerator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <numeric>
@@ -8,10 +9,13 @@
 #include <utility>
 
 #include "raygrain/error.h"
+#include "raygrain/rays.h"
 
 #include "accel/build_trees.h"
+#include "accel/foreign.h"
 #include "accel/search.h"
 #include "base/parallel.h"
+#include "base/timer.h"
 
 namespace raygrain {
 
@@ -23,11 +27,20 @@ struct Accelerator::Parts {
   AreaTable areas;
   Traversal traversal = Traversal::kWide;
   std::vector<Coverage> coverages = {};  // parallel to `locals`, or empty
+  ForeignFilter foreign = ForeignFilter(areas.geometries);
+
+  /// Rays along an area that its coverage answers, whatever region they are in.
+  std::optional<Hit> nearest_covered(const Ray& ray) const;
+  std::optional<bool> any_covered(const Ray& ray) const;
+  void count_use(uint32_t area, const Ray& ray, AcceleratorCounters* counters) const;
 
   Hit nearest(const Ray& ray, AcceleratorCounters* counters) const;
   bool any(const Ray& ray, AcceleratorCounters* counters) const;
-  /// What no area answers goes to the wide global tree as an array.
-  bool has_only_wide_global() const { return locals.empty() && global.wide().has_value(); }
+
+  /// Rays that are no area's go to the global tree together, the others one by one.
+  template <class Answer, class One, class Many>
+  void answer_array(std::span<const Ray> rays, std::span<Answer> answers, unsigned threads, const One& one,
+                    const Many& many) const;
 };
 
 namespace {
@@ -89,8 +102,10 @@ std::vector<SearchTree> make_searches(const TriangleMesh& mesh, std::span<const 
                                       Traversal traversal) {
   std::vector<SearchTree> searches;
   searches.reserve(locals.size());
-  for (const LocalTree& local : locals)
+  for (const LocalTree& local : locals) {
     searches.push_back(make_search_tree(mesh, local.tree, local.measure, traversal));
+    if (local.in_ray_space && traversal == Traversal::kWide) searches.back().add_ray_space(*local.in_ray_space);
+  }
   return searches;
 }
 
@@ -119,6 +134,20 @@ void for_chunks(size_t rays, unsigned threads, AcceleratorCounters* counters, co
     const std::lock_guard lock(mutex);
     counters->add(own);
   });
+}
+
+/// The least of three runs over the rays.
+template <class Trace>
+double nanoseconds_per_ray(std::span<const Ray> rays, const Trace& trace) {
+  double least = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < 3; ++round) {
+    const Timer timer;
+    uint32_t sum = 0;  // so that no search is left out
+    for (const Ray& ray : rays) sum += trace(ray).triangle;
+    const double seconds = timer.seconds() + (sum == 0xfffffffeu ? 1e-12 : 0);
+    least = std::min(least, seconds * 1e9 / static_cast<double>(rays.size()));
+  }
+  return least;
 }
 
 /// Are all hits of the ray that can be nearer than `best` known, when those with t <= exit are?
@@ -161,15 +190,40 @@ Accelerator Accelerator::with_local_trees(std::vector<LocalTree> locals, const T
                                                          parts_->global, std::move(table), parts_->traversal}));
 }
 
+std::optional<Hit> Accelerator::Parts::nearest_covered(const Ray& ray) const {
+  for (const Coverage& coverage : coverages)
+    if (const auto hit = coverage.intersect(ray)) return hit;
+  return {};
+}
+
+std::optional<bool> Accelerator::Parts::any_covered(const Ray& ray) const {
+  for (const Coverage& coverage : coverages)
+    if (const auto hit = coverage.occluded(ray)) return hit;
+  return {};
+}
+
+void Accelerator::Parts::count_use(uint32_t area, const Ray& ray, AcceleratorCounters* counters) const {
+  const std::optional<FrameTree>& tree = searches[area].in_ray_space();
+  if (counters == nullptr || !tree) return;
+  const FrameUse use = tree->use_of(ray);
+  counters->columns += use == FrameUse::kColumn;
+  counters->cones += use == FrameUse::kCone;
+}
+
 Hit Accelerator::Parts::nearest(const Ray& ray, AcceleratorCounters* counters) const {
   if (counters != nullptr) ++counters->rays;
   if (!is_valid(ray)) {
     if (counters != nullptr) ++counters->invalid_rays;
     return {};
   }
+  if (const auto hit = nearest_covered(ray)) {
+    if (counters != nullptr) ++counters->covered;
+    return *hit;
+  }
   Hit best;
   AreaWalk walk(areas, ray, counters);
   while (const auto stage = walk.next()) {
+    count_use(stage->area, ray, counters);
     best = searches[stage->area].intersect(ray, best, walk.search_options(), local_counters(counters));
     if (!is_final(best, ray, stage->exit)) continue;
     if (counters != nullptr && is_hit(best)) ++counters->local_hits;
@@ -185,8 +239,13 @@ bool Accelerator::Parts::any(const Ray& ray, AcceleratorCounters* counters) cons
     if (counters != nullptr) ++counters->invalid_rays;
     return false;
   }
+  if (const auto hit = any_covered(ray)) {
+    if (counters != nullptr) ++counters->covered;
+    return *hit;
+  }
   AreaWalk walk(areas, ray, counters);
   while (const auto stage = walk.next()) {
+    count_use(stage->area, ray, counters);
     if (searches[stage->area].occluded(ray, walk.search_options(), local_counters(counters))) {
       if (counters != nullptr) ++counters->local_hits;  // wherever it is: any hit answers
       return true;
@@ -198,29 +257,104 @@ bool Accelerator::Parts::any(const Ray& ray, AcceleratorCounters* counters) cons
 }
 
 Hit Accelerator::intersect(const Ray& ray, AcceleratorCounters* counters) const {
+  if (counters == nullptr && parts_->foreign.is_foreign(ray)) return parts_->global.intersect(ray, {}, {}, nullptr);
   return parts_->nearest(ray, counters);
 }
 
 bool Accelerator::occluded(const Ray& ray, AcceleratorCounters* counters) const {
+  if (counters == nullptr && parts_->foreign.is_foreign(ray)) return parts_->global.occluded(ray, {}, nullptr);
   return parts_->any(ray, counters);
+}
+
+template <class Answer, class One, class Many>
+void Accelerator::Parts::answer_array(std::span<const Ray> rays, std::span<Answer> answers, unsigned threads,
+                                      const One& one, const Many& many) const {
+  constexpr size_t kChunk = 1024;
+  parallel_for(rays.size(), kChunk, threads, [&](size_t begin, size_t end) {
+    std::array<uint32_t, kChunk> numbers;
+    size_t foreigners = 0;
+    for (size_t i = begin; i < end; ++i) {
+      numbers[foreigners] = static_cast<uint32_t>(i - begin);
+      foreigners += foreign.is_foreign(rays[i]) ? 1 : 0;
+    }
+    const std::span<const Ray> part = rays.subspan(begin, end - begin);
+    const std::span<Answer> room = answers.subspan(begin, end - begin);
+    if (foreigners == part.size()) return many(part, room);
+    std::vector<Ray> gathered;
+    gathered.reserve(foreigners);
+    size_t next = 0;
+    for (size_t i = 0; i < part.size(); ++i) {
+      if (next < foreigners && numbers[next] == i) {
+        gathered.push_back(part[i]);
+        ++next;
+      } else {
+        room[i] = one(part[i]);
+      }
+    }
+    std::vector<Answer> found(foreigners);
+    many(gathered, found);
+    for (size_t i = 0; i < foreigners; ++i) room[numbers[i]] = found[i];
+  });
 }
 
 void Accelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits, unsigned threads,
                             AcceleratorCounters* counters) const {
   check_sizes(rays.size(), hits.size());
-  if (counters == nullptr && parts_->has_only_wide_global())
-    return parts_->global.wide()->intersect(rays, hits, threads);
-  for_chunks(rays.size(), threads, counters,
-             [&](size_t i, AcceleratorCounters* count) { hits[i] = parts_->nearest(rays[i], count); });
+  const std::optional<WideBvh>& global = parts_->global.wide();
+  if (counters != nullptr || !global)
+    return for_chunks(rays.size(), threads, counters,
+                      [&](size_t i, AcceleratorCounters* count) { hits[i] = parts_->nearest(rays[i], count); });
+  if (parts_->locals.empty()) return global->intersect(rays, hits, threads);
+  parts_->answer_array(
+      rays, hits, threads, [&](const Ray& ray) { return parts_->nearest(ray, nullptr); },
+      [&](std::span<const Ray> some, std::span<Hit> found) { global->intersect(some, found); });
 }
 
 void Accelerator::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, unsigned threads,
                            AcceleratorCounters* counters) const {
   check_sizes(rays.size(), flags.size());
-  if (counters == nullptr && parts_->has_only_wide_global())
-    return parts_->global.wide()->occluded(rays, flags, threads);
-  for_chunks(rays.size(), threads, counters,
-             [&](size_t i, AcceleratorCounters* count) { flags[i] = parts_->any(rays[i], count) ? 1 : 0; });
+  const std::optional<WideBvh>& global = parts_->global.wide();
+  if (counters != nullptr || !global)
+    return for_chunks(rays.size(), threads, counters,
+                      [&](size_t i, AcceleratorCounters* count) { flags[i] = parts_->any(rays[i], count) ? 1 : 0; });
+  if (parts_->locals.empty()) return global->occluded(rays, flags, threads);
+  parts_->answer_array(
+      rays, flags, threads, [&](const Ray& ray) { return static_cast<uint8_t>(parts_->any(ray, nullptr)); },
+      [&](std::span<const Ray> some, std::span<uint8_t> found) { global->occluded(some, found); });
+}
+
+Explanation Accelerator::explain(const AcceleratorCounters& counters, size_t rays) const {
+  if (rays == 0) throw Error(ErrorCode::kUsage, "explain", "0 rays", "Use at least 1");
+  Explanation explanation;
+  explanation.counters = counters;
+  explanation.global_bytes = raygrain::memory_bytes(global_tree()) + parts_->global.wide_bytes();
+  for (size_t i = 0; i < parts_->locals.size(); ++i) {
+    const LocalTree& local = parts_->locals[i];
+    const SearchTree& search = parts_->searches[i];
+    AreaReport report;
+    report.name = local.area.name;
+    report.triangles = local.tree->prims.size();
+    report.build_seconds = local.build_seconds;
+    report.memory_bytes = raygrain::memory_bytes(*local.tree) + search.wide_bytes();
+    if (i < parts_->coverages.size() && parts_->coverages[i].is_useful()) {
+      report.structures += "coverage, ";
+      report.build_seconds += parts_->coverages[i].build_seconds();
+      report.memory_bytes += parts_->coverages[i].memory_bytes();
+    }
+    if (const auto& tree = search.in_ray_space())
+      report.structures += std::string("tree in ray space (") + raygrain::name(tree->frame().kind) + "), ";
+    report.structures += "tree";
+    const std::vector<Ray> sample = cast_rays(AreaRays{local.area, RayStart::kRandomDepth}, rays, i + 1);
+    const double here = nanoseconds_per_ray(sample, [&](const Ray& ray) { return parts_->nearest(ray, nullptr); });
+    const double global =
+        nanoseconds_per_ray(sample, [&](const Ray& ray) { return parts_->global.intersect(ray, {}, {}, nullptr); });
+    report.area_nanoseconds = here;
+    report.global_nanoseconds = global;
+    report.break_even_rays =
+        global > here ? report.build_seconds * 1e9 / (global - here) : std::numeric_limits<double>::infinity();
+    explanation.areas.push_back(std::move(report));
+  }
+  return explanation;
 }
 
 std::span<const Coverage> Accelerator::coverages() const {
@@ -265,11 +399,14 @@ size_t Accelerator::wide_memory_bytes() const {
 void AcceleratorCounters::add(const AcceleratorCounters& other) {
   rays += other.rays;
   invalid_rays += other.invalid_rays;
+  covered += other.covered;
   areas_tested += other.areas_tested;
   areas_serving += other.areas_serving;
   local_searches += other.local_searches;
   local_hits += other.local_hits;
   continued += other.continued;
+  columns += other.columns;
+  cones += other.cones;
   global_searches += other.global_searches;
   local.add(other.local);
   global.add(other.global);

@@ -1,9 +1,12 @@
 #include "accel/build_trees.h"
 
+#include <algorithm>
+
 #include "raygrain/refine.h"
 
 #include "accel/joint_progress.h"
 #include "base/parallel.h"
+#include "base/timer.h"
 
 namespace raygrain {
 
@@ -66,12 +69,23 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
   BuiltTrees trees;
   trees.locals.resize(areas.size());
   std::vector<std::optional<SearchTree>> searches(areas.size());
+  const bool in_ray_space = options.space == LocalSpace::kRay && options.traversal == Traversal::kWide;
+  const auto corners = in_ray_space ? std::make_shared<const TriangleCorners>(mesh) : nullptr;
   const auto build_local = [&](size_t i) {
+    const Timer timer;
     const InfluenceArea& area = areas[i];
     LocalTree& local = trees.locals[i];
     local = build_local_tree(mesh, area, options.local, options.registry, options.membership, samples(&area),
                              {options.threads, progress.part(i + 1, 0, kBuilt)});
     searches[i] = make_search_tree(mesh, local.tree, local.measure, options.traversal, options.isa);
+    if (in_ray_space) {
+      std::vector<uint32_t> triangles = local.tree->prims;
+      std::ranges::sort(triangles);
+      triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+      local.in_ray_space = build_area_frame_tree(area, corners, triangles, samples(&area), options);
+      if (local.in_ray_space) searches[i]->add_ray_space(*local.in_ray_space);
+    }
+    local.build_seconds = timer.seconds();
   };
   const auto build = [&](size_t task) {
     if (task > 0) {

@@ -17,6 +17,14 @@ struct BuiltTrees {
 BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> areas,
                        const AcceleratorOptions& options);
 
+/// The tree in the area's ray space over these triangles: in the frame that options name, or in the one of least
+/// predicted cost, found on a subset. Nothing where no frame suits. `samples`: rays whose directions the measure is
+/// made for; without any the area's own.
+std::optional<FrameTree> build_area_frame_tree(const InfluenceArea& area,
+                                               const std::shared_ptr<const TriangleCorners>& corners,
+                                               std::span<const uint32_t> triangles, std::span<const Ray> samples,
+                                               const AcceleratorOptions& options);
+
 /// One per area, or none where options do not want them.
 std::vector<Coverage> build_coverages(const std::shared_ptr<const TriangleMesh>& mesh,
                                       std::span<const InfluenceArea> areas, const AcceleratorOptions& options);

@@ -133,9 +133,9 @@ double drift(const FrameSegment& s) {
   return std::max(std::abs(s.slope_x), std::abs(s.slope_y)) * 0.5 * (s.z_hi - s.z_lo);
 }
 
-Column to_column(const FrameSegment& s) {
+FrameColumn to_column(const FrameSegment& s) {
   constexpr double kOut = 0x1p-50;
-  Column column;
+  FrameColumn column;
   const double half = (0.5 + kOut) * (s.z_hi - s.z_lo);
   const double x_slack = std::abs(s.slope_x) * half + s.error, y_slack = std::abs(s.slope_y) * half + s.error;
   const double x_out = x_slack + kOut * (x_slack + std::abs(s.x0));

@@ -119,8 +119,8 @@ FrameTriangle frame_triangle(const RayFrame& frame, Vec3 a, Vec3 b, Vec3 c, cons
   constexpr double kFloatError = 0x1p-21;  // of p, q, r in float, and of p x + q y + r
   result.z_error += kFloatError * ((std::abs(result.p) + std::abs(result.q)) * reach + std::abs(result.r));
   const double flat_error = half + kFloatError * std::max(std::abs(lo), std::abs(hi));
-  if (result.z_error < flat_error) return result;
-  result.p = result.q = 0;
+  if (result.z_error <= 2 * flat_error) return result;
+  result = {};  // beyond the box the triangle may be at other depths, so it must never be sure
   result.r = 0.5 * (lo + hi);
   result.z_error = flat_error;
   return result;

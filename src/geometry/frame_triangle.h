@@ -15,7 +15,7 @@ struct FrameTriangle {
   struct Edge {
     double a = 0, b = 0, c = 0;
   };
-  std::array<Edge, 3> edges;  // 0, 0, 0: not known well enough, or no orientation
+  std::array<Edge, 3> edges;  // 0, 0, 0: not known well enough, or no orientation; all where the plane is too steep
   double p = 0, q = 0, r = 0, z_error = 0;
 };
 inline constexpr double kEdgeError = 0x1p-22;

@@ -46,6 +46,12 @@ RayMeasure make_directional(const HeuristicInput& input) {
               "use PAH, or a plane area");
 }
 
+RayMeasure make_visible(const HeuristicInput& input) {
+  return visible_measure(
+      input.area != nullptr ? projected_area_measure(*input.area, Culling::kWindow) : surface_area_measure(),
+      input.samples);
+}
+
 std::vector<MeasureEntry> default_measures() {
   return {
       {"SAH", "surface area: rays from everywhere", false, false,
@@ -57,6 +63,8 @@ std::vector<MeasureEntry> default_measures() {
       {"DIR", "projected area along one direction as three face weights", true, false, make_directional},
       {"SAMPLED", "sample rays that meet the box", false, true,
        [](const HeuristicInput& input) { return sampled_measure(input.samples); }},
+      {"VISIBLE", "projected area (without an area: surface area), weighted by the share of sample rays alive there",
+       false, true, make_visible},
   };
 }
 

@@ -94,7 +94,7 @@ class Collapse {
 }  // namespace
 
 WideTree collapse(const Bvh& tree, const TriangleMesh& mesh, const WideOptions& options) {
-  const WideForm form{sizeof(WideNode), [](size_t count) { return count * kTriangleBytes; },
+  const WideForm form{kWidth, sizeof(WideNode), [](size_t count) { return count * kTriangleBytes; },
                       [&](uint32_t triangle) { return triangle_bounds(mesh, triangle); }};
   if (tree.nodes.empty()) {
     validate(options);

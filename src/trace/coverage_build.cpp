@@ -345,6 +345,14 @@ class Builder {
   std::vector<std::array<uint32_t, 3>> neighbours_;
 };
 
+/// Products of coordinates must neither overflow nor vanish.
+bool fits_floats(const Bounds& box) {
+  const Vec3 lo = box.lo, hi = box.hi, size = extent(box);
+  const float farthest =
+      std::max({std::abs(lo.x), std::abs(lo.y), std::abs(lo.z), std::abs(hi.x), std::abs(hi.y), std::abs(hi.z)});
+  return farthest <= 0x1p30f && std::max({size.x, size.y, size.z}) >= 0x1p-30f;
+}
+
 }  // namespace
 
 CoverageGrid build_coverage(std::shared_ptr<const TriangleMesh> mesh, const AreaGeometry& area,
@@ -352,7 +360,7 @@ CoverageGrid build_coverage(std::shared_ptr<const TriangleMesh> mesh, const Area
   CoverageGrid grid;
   grid.mesh = std::move(mesh);
   const Bounds box = mesh_bounds(*grid.mesh);
-  if (is_empty(box)) return grid;
+  if (is_empty(box) || !fits_floats(box)) return grid;
   double near_z = 0;
   if (area.is_plane()) {
     set_parallel_map(grid, std::get<PlaneArea>(area.area().shape).direction, box);

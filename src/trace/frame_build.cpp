@@ -47,6 +47,8 @@ Vec3 weights_of(const FrameBuildOptions& options, const Bounds& scene) {
   return to_float(Vec3d{w.x + term, w.y + term, 1});
 }
 
+constexpr uint32_t kMostFrameTriangles = 16;  // in a leaf
+
 bool fits_floats(const Bounds& scene) {
   constexpr float kLeast = 0x1p-30f, kGreatest = 0x1p30f;
   const auto size = [&](int axis) { return std::max(std::abs(scene.lo[axis]), std::abs(scene.hi[axis])); };
@@ -77,12 +79,11 @@ std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr
   Bvh tree = options.spatial ? build_spatial(primitives.bounds, primitives.centers, build)
                              : build_binned(primitives.bounds, primitives.centers, build);
   for (uint32_t& primitive : tree.prims) primitive = primitives.ids[primitive];
-  if (cost != nullptr) *cost = estimated_cost(tree, build.strategy.measure, build.costs);
-  WideOptions w{.measure = build.strategy.measure, .isa = options.isa};
-  if (getenv("ML")) w.max_leaf_size = (uint32_t)atoi(getenv("ML"));
-  if (getenv("CT")) w.costs.triangle = (float)atof(getenv("CT"));
-  if (getenv("CL")) w.costs.leaf = (float)atof(getenv("CL"));
-  return FrameTree(frame, tree, std::move(corners), w);
+  if (cost != nullptr)
+    *cost = estimated_cost(tree, build.strategy.measure, build.costs) *
+            static_cast<double>(build.strategy.measure(tree.nodes[0].bounds)) * options.weights.z;
+  return FrameTree(frame, tree, std::move(corners),
+                   {.measure = build.strategy.measure, .isa = options.isa, .max_leaf_size = kMostFrameTriangles});
 }
 
 }  // namespace raygrain

@@ -12,32 +12,35 @@
 
 namespace raygrain {
 
-/// A child: bits 0-3: triangles (0 = a node), 4-31: offset in units of 32 bytes. 0 stands for no child.
+/// Children of a node and triangles of a leaf, at most.
+inline constexpr size_t kFrameWidth = 16;
+
+/// A child: bits 0-4: triangles (0 = a node), 5-31: offset in units of 64 bytes. 0 stands for no child.
 using FrameRef = uint32_t;
-inline constexpr size_t kFrameUnit = 32;
-inline constexpr uint64_t kMostFrameBytes = uint64_t{kFrameUnit} << 28;
+inline constexpr FrameRef kNoFrameRef = 0xffffffffu;
+inline constexpr size_t kFrameUnit = 64;
+inline constexpr uint64_t kMostFrameBytes = uint64_t{kFrameUnit} << 27;
 
 inline FrameRef frame_ref(uint64_t offset, size_t count) {
-  return static_cast<FrameRef>(offset / kFrameUnit) << 4 | static_cast<FrameRef>(count);
+  return static_cast<FrameRef>(offset / kFrameUnit) << 5 | static_cast<FrameRef>(count);
 }
 inline size_t triangles_of(FrameRef ref) {
-  return ref & 15;
+  return ref & 31;
 }
 
-/// A visit takes one entry off and puts at most eight on; whole vectors are written.
-inline constexpr size_t kFrameStackSize = kWideStackSize + kWidth;
+/// A visit takes one entry off and puts at most sixteen on; whole vectors are written.
+inline constexpr size_t kFrameStackSize = (kFrameWidth - 1) * kMaxWideLevels + 2 * kFrameWidth;
 
 /// Boxes in the frame, rounded outward, farther ones first (by the least z); those of missing children are empty (lo =
 /// infinity, hi = -infinity).
 struct alignas(64) FrameNode {
-  float lower[3][kWidth], upper[3][kWidth];
-  FrameRef child[kWidth];
-  float unused[kWidth];
+  float lower[3][kFrameWidth], upper[3][kFrameWidth];
+  FrameRef child[kFrameWidth];
 };
-static_assert(sizeof(FrameNode) == 256);
+static_assert(sizeof(FrameNode) == 448);
 
-/// Up to eight triangles: middle and half extent of the leaf's depths, then `count` floats of each field, then count
-/// ids. Kernels read eight floats wherever they are.
+/// Up to sixteen triangles: middle and half extent of the leaf's depths, then `count` floats of each field, then count
+/// ids. Kernels read sixteen floats wherever they are.
 struct FrameLeaf {
   enum Field : size_t { kEdges = 0, kP = 9, kQ = 10, kR = 11, kError = 12, kId = 13, kFields = 14 };
   const std::byte* bytes;
@@ -65,20 +68,21 @@ struct FrameMemory {
   Bounds bounds;
   std::array<float, 2> depths{};           // a little more than the bounds': what rays are followed through
   double middle = 0, half = 0, depth = 0;  // of these depths, and the largest magnitude of them
+  double least_slope = 0;                  // of cones: less counts as this
   double width = 0;                        // no |x| or |y| of the bounds is greater
   double reach = 0;                        // for edges and planes
   float edge_error = 0;                    // of edge functions in float
   size_t nodes = 0, leaves = 0;
 
   bool is_empty() const { return nodes == 0; }
-  const std::byte* at(FrameRef ref) const { return memory.data() + static_cast<size_t>(ref >> 4) * kFrameUnit; }
+  const std::byte* at(FrameRef ref) const { return memory.data() + static_cast<size_t>(ref >> 5) * kFrameUnit; }
   const FrameNode& node(FrameRef ref) const { return *reinterpret_cast<const FrameNode*>(at(ref)); }
   FrameLeaf leaf(FrameRef ref) const { return {at(ref), triangles_of(ref)}; }
 };
 
 /// A ray prepared for the kernels; errors are allowed for (docs/theory-frames.md, section "Columns" and "Cones").
 struct FrameQuery {
-  Column column;  // for cones too, with its z only
+  FrameColumn column;  // for cones too, with its z only
   float tie_constant, tie_linear, tie_square;
 
   float x0, y0, slope_x, slope_y;      // cones: x = x0 + slope_x z

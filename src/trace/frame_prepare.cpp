@@ -14,35 +14,35 @@ constexpr double kColumnDrift = 0x1p-14;
 /// Rays that leave it by no more than this along the whole tree are cones.
 constexpr double kConeDrift = 0.5;
 
-constexpr double kLeastSlope = 0x1p-40;  // of the tree's width, over its depth
+/// Directions further from the z axis than this tangent, and origins further from the eye (in near_z), are not for
+/// frames.
+constexpr double kSteepest = 0x1p10, kFarthest = 0x1p18;
 
-/// One coordinate of a cone: x = at + slope (z - z0), wrong by at most `error`.
+/// One coordinate of a cone: x = intercept + slope z, wrong by at most `error` at the tree's depths.
 struct ConeSide {
   float intercept, slope, inverse, near, far;
   double error;  // of intercept + slope z, evaluated in float
 };
 
-ConeSide cone_side(const FrameMemory& tree, const FrameSegment& s, double at, double slope, double error) {
-  const double depth =
-      std::max(std::abs(static_cast<double>(tree.depths[0])), std::abs(static_cast<double>(tree.depths[1])));
-  const double whole = static_cast<double>(tree.depths[1]) - static_cast<double>(tree.depths[0]);
-  const double steep = std::copysign(std::max(std::abs(slope), kLeastSlope * tree.width / whole), slope);
+ConeSide cone_side(const FrameMemory& tree, double intercept, double slope, double error) {
+  const double steep = std::copysign(std::max(std::abs(slope), tree.least_slope), slope);
+  const double inverse_in_double = 1 / steep;
   ConeSide side{};
-  side.inverse = static_cast<float>(1 / steep);
-  const double inverse = side.inverse, used = 1 / inverse;
-  error += (std::abs(used - slope) + s.slope_error) * whole;
-  const double offset = s.z0 - at * inverse;
-  const double slack = std::abs(inverse) * (error + 0x1p-22 * tree.width) + 0x1p-22 * depth;
+  side.inverse = static_cast<float>(inverse_in_double);
+  const double inverse = side.inverse, size = std::abs(steep);
+  error += (size - std::abs(slope) + 0x1p-23 * size) * 2 * tree.depth;  // from the slope to 1 / inverse
+  const double offset = -intercept * inverse;
+  const double slack = std::abs(inverse) * (error + 0x1p-22 * tree.width) + 0x1p-22 * tree.depth;
   side.near = loosely_below(offset - slack);
   side.far = loosely_above(offset + slack);
-  side.slope = static_cast<float>(used);
-  side.intercept = static_cast<float>(at - used * s.z0);
-  side.error = error + 0x1p-21 * (tree.reach + std::abs(used) * depth + std::abs(static_cast<double>(side.intercept)));
+  side.slope = static_cast<float>(steep);
+  side.intercept = static_cast<float>(intercept);
+  side.error = error + 0x1p-21 * (tree.reach + size * tree.depth + std::abs(intercept));
   return side;
 }
 
-void set_cone(const FrameMemory& tree, const FrameSegment& s, FrameQuery& query) {
-  const ConeSide x = cone_side(tree, s, s.x0, s.slope_x, s.error), y = cone_side(tree, s, s.y0, s.slope_y, s.error);
+void set_cone(const FrameMemory& tree, Vec2d intercept, Vec2d slope, double error, FrameQuery& query) {
+  const ConeSide x = cone_side(tree, intercept.x, slope.x, error), y = cone_side(tree, intercept.y, slope.y, error);
   query.x0 = x.intercept;
   query.y0 = y.intercept;
   query.slope_x = x.slope;
@@ -89,7 +89,7 @@ struct Depths {
   }
 };
 
-void set_sides(Column& column, double x, double y, double radius) {
+void set_sides(FrameColumn& column, double x, double y, double radius) {
   column.box.lo.x = loosely_below(x - radius);
   column.box.lo.y = loosely_below(y - radius);
   column.box.hi.x = loosely_above(x + radius);
@@ -101,82 +101,96 @@ void set_sides(Column& column, double x, double y, double radius) {
   column.radius = static_cast<float>((radius + size * 0x1p-22 + 0x1p-146) * (1 + 0x1p-18));
 }
 
-/// False where the way is not short: the ray may still be a column. Finite tmin.
-bool set_column(const FrameMemory& tree, const Ray& ray, FrameQuery& query) {
-  const RayFrame& frame = tree.frame;
-  const Vec3d offset = to_double(ray.origin) - frame.center, direction = to_double(ray.direction);
-  const Vec3d q = turned(frame, offset), m = turned(frame, direction);
-  const double origin_size = frame.norm * largest(offset), direction_size = frame.norm * largest(direction);
-  const double inverse = 1 / m.z, steepness = direction_size * std::abs(inverse);
-  const double x = m.x * inverse, y = m.y * inverse;
-  Depths depths(ray, q.z, m.z, origin_size, direction_size);
-  double radius, at_x, at_y;
-  if (frame.is_projective()) {
-    const double slope_x = q.z * x - q.x, slope_y = q.z * y - q.y, lean = 1 + std::max(std::abs(x), std::abs(y));
-    at_x = x + tree.middle * slope_x;
-    at_y = y + tree.middle * slope_y;
-    radius = std::max(std::abs(slope_x), std::abs(slope_y)) * tree.half +
-             0x1p-48 * steepness * lean * (1 + tree.depth * origin_size);
-    query.tie_constant = 0;
-    query.tie_linear = 0x1p-20f;
-    query.tie_square = loosely_above(0x1p-20 * std::abs(q.z) + 0x1p-147 * std::abs(m.z));
-    const double near_z = frame.near_z;
-    if (!(origin_size <= 0x1p18 * near_z)) return false;
-    if (depths.hi < near_z) return true;  // the box is empty
-    const double lo = std::max(depths.lo, near_z), inverse_lo = 1 / lo, inverse_hi = 1 / depths.hi;
-    const double more = depths.sure_lo - lo, less = depths.hi - depths.sure_hi;
-    depths.lo = -inverse_lo * (1 + 0x1p-50);
-    depths.hi = -inverse_hi * (1 - 0x1p-50);
-    // -1 / (d + e) <= -1 / d + e / d^2, and -1 / (d - e) >= -1 / d - 2 e / d^2 for e <= d / 2.
-    depths.sure_lo = -inverse_lo * (1 - 0x1p-49) + std::max(more, 0.0) * inverse_lo * inverse_lo;
-    depths.sure_hi = 2 * less * inverse_hi <= 1 || !(less > 0)
-                         ? -inverse_hi * (1 + 2 * std::max(less, 0.0) * inverse_hi + 0x1p-49)
-                         : -std::numeric_limits<double>::infinity();
-  } else {
-    const double slope = std::max(std::abs(x), std::abs(y)), reach = std::abs(q.z) + tree.depth;
-    at_x = q.x;
-    at_y = q.y;
-    radius = (slope + 0x1p-49 * steepness * (1 + slope)) * reach + 0x1p-49 * (1 + slope) * origin_size;
-    query.tie_constant = loosely_above(0x1p-22 * std::abs(q.z) + 0x1p-148 * std::abs(m.z));
-    query.tie_linear = 0x1p-22f;
-    query.tie_square = 0;
-  }
-  if (!(radius <= kColumnDrift * tree.width && steepness <= 0x1p10)) return false;
-  Column& column = query.column;
-  column.ascending = m.z > 0;
-  const double lo = std::max(static_cast<double>(tree.depths[0]), depths.lo);
-  const double hi = std::min(static_cast<double>(tree.depths[1]), depths.hi);
-  if (!(lo <= hi)) return true;
-  set_sides(column, at_x, at_y, radius);
-  column.box.lo.z = loosely_below(lo);
-  column.box.hi.z = loosely_above(hi);
-  column.sure_lo = loosely_above(std::max(lo, depths.sure_lo));
-  column.sure_hi = loosely_below(std::min(hi, depths.sure_hi));
+/// To the depths of a projective frame; false where all is before the near plane.
+bool project(Depths& depths, double near_z) {
+  if (depths.hi < near_z) return false;
+  const double lo = std::max(depths.lo, near_z), inverse_lo = 1 / lo, inverse_hi = 1 / depths.hi;
+  const double more = std::max(depths.sure_lo - lo, 0.0), less = depths.hi - depths.sure_hi;  // NaN at infinity
+  depths.lo = -inverse_lo * (1 + 0x1p-50);
+  depths.hi = -inverse_hi * (1 - 0x1p-50);
+  // -1 / (d + e) <= -1 / d + e / d^2, and -1 / (d - e) >= -1 / d - 2 e / d^2 for e <= d / 2.
+  depths.sure_lo = -inverse_lo * (1 - 0x1p-49) + more * inverse_lo * inverse_lo;
+  const bool is_far = 2 * less * inverse_hi > 1;
+  depths.sure_hi = is_far ? -std::numeric_limits<double>::infinity()
+                          : -inverse_hi * (1 + 2 * std::max(0.0, less) * inverse_hi + 0x1p-49);
   return true;
+}
+
+/// The ray as x = intercept + slope z, in frame coordinates.
+struct FrameLine {
+  Vec2d intercept, slope;
+  double error;   // at every depth of the tree
+  Vec2d at;       // x and y of a column
+  double radius;  // of that column
+};
+
+FrameLine parallel_line(const FrameMemory& tree, Vec3d q, Vec2d slope, double origin_size, double steepness,
+                        FrameQuery& query, double speed) {
+  const double lean = 1 + std::max(std::abs(slope.x), std::abs(slope.y)), reach = std::abs(q.z) + tree.depth;
+  const double error = 0x1p-49 * lean * (origin_size + 2 * steepness * reach);
+  query.tie_constant = loosely_above(0x1p-22 * std::abs(q.z) + 0x1p-148 * std::abs(speed));
+  query.tie_linear = 0x1p-22f;
+  query.tie_square = 0;
+  return {{q.x - q.z * slope.x, q.y - q.z * slope.y}, slope, error, {q.x, q.y}, (lean - 1) * reach + error};
+}
+
+FrameLine projective_line(const FrameMemory& tree, Vec3d q, Vec2d x, double origin_size, double steepness,
+                          FrameQuery& query, double speed) {
+  const double lean = 1 + std::max(std::abs(x.x), std::abs(x.y));
+  const double error = 0x1p-48 * steepness * lean * (1 + tree.depth * origin_size);
+  const Vec2d slope{q.z * x.x - q.x, q.z * x.y - q.y};
+  query.tie_constant = 0;
+  query.tie_linear = 0x1p-20f;
+  query.tie_square = loosely_above(0x1p-20 * std::abs(q.z) + 0x1p-147 * std::abs(speed));
+  return {x,
+          slope,
+          error,
+          {x.x + tree.middle * slope.x, x.y + tree.middle * slope.y},
+          std::max(std::abs(slope.x), std::abs(slope.y)) * tree.half + error};
 }
 
 }  // namespace
 
 FrameUse prepare(const FrameMemory& tree, const Ray& ray, FrameQuery& query) {
-  FrameSegment s;
   query.column.box = {};
   if (!(ray.tmin <= ray.tmax)) return FrameUse::kColumn;
-  if (std::abs(ray.tmin) < kInf && set_column(tree, ray, query)) return FrameUse::kColumn;
-  const FrameFit fit = make_segment(tree.frame, ray, tree.depths, s);
-  if (fit == FrameFit::kUnfit) return FrameUse::kUnfit;
-  if (fit == FrameFit::kNothing) return FrameUse::kColumn;
-  query.tie_constant = loosely_above(s.tie_constant);
-  query.tie_linear = loosely_above(s.tie_linear);
-  query.tie_square = loosely_above(s.tie_square);
-  query.column = to_column(s);
-  if (drift(s) + s.error <= kColumnDrift * tree.width) {
-    query.column.radius *= 1 + 0x1p-20f;
+  if (std::abs(ray.tmin) == kInf) return FrameUse::kUnfit;
+  const RayFrame& frame = tree.frame;
+  const Vec3d offset = to_double(ray.origin) - frame.center, direction = to_double(ray.direction);
+  const Vec3d q = turned(frame, offset), m = turned(frame, direction);
+  const double origin_size = frame.norm * largest(offset), direction_size = frame.norm * largest(direction);
+  const double inverse = 1 / m.z, steepness = direction_size * std::abs(inverse);
+  Depths depths(ray, q.z, m.z, origin_size, direction_size);
+  if (!(steepness <= kSteepest)) return FrameUse::kUnfit;
+  FrameLine line;
+  if (frame.is_projective()) {
+    if (!(origin_size <= kFarthest * frame.near_z)) return FrameUse::kUnfit;
+    line = projective_line(tree, q, {m.x * inverse, m.y * inverse}, origin_size, steepness, query, m.z);
+    if (!project(depths, frame.near_z)) return FrameUse::kColumn;
+  } else {
+    line = parallel_line(tree, q, {m.x * inverse, m.y * inverse}, origin_size, steepness, query, m.z);
+  }
+  const bool is_column = line.radius <= kColumnDrift * tree.width;
+  const double slope = std::max(std::abs(line.slope.x), std::abs(line.slope.y));
+  if (!is_column && !(slope * 2 * tree.half <= kConeDrift * tree.width && line.error <= kColumnDrift * tree.width))
+    return FrameUse::kUnfit;
+
+  FrameColumn& column = query.column;
+  column.ascending = m.z > 0;
+  const double lo = std::max(static_cast<double>(tree.depths[0]), depths.lo);
+  const double hi = std::min(static_cast<double>(tree.depths[1]), depths.hi);
+  if (!(lo <= hi)) return FrameUse::kColumn;
+  column.box.lo.z = loosely_below(lo);
+  column.box.hi.z = loosely_above(hi);
+  column.sure_lo = loosely_above(std::max(lo, depths.sure_lo));
+  column.sure_hi = loosely_below(std::min(hi, depths.sure_hi));
+  if (is_column) {
+    set_sides(column, line.at.x, line.at.y, line.radius);
     return FrameUse::kColumn;
   }
-  const double whole = static_cast<double>(tree.depths[1]) - static_cast<double>(tree.depths[0]);
-  const double slope = std::max(std::abs(s.slope_x), std::abs(s.slope_y));
-  if (!(slope * whole <= kConeDrift * tree.width && s.error <= kColumnDrift * tree.width)) return FrameUse::kUnfit;
-  set_cone(tree, s, query);
+  column.box.lo.x = column.box.lo.y = -kInf;
+  column.box.hi.x = column.box.hi.y = kInf;
+  set_cone(tree, line.intercept, line.slope, line.error, query);
   return FrameUse::kCone;
 }
 

@@ -40,6 +40,7 @@ void set_sizes(FrameMemory& tree, const Bounds& bounds) {
   tree.middle = 0.5 * (lo + hi);
   tree.half = 0.5 * (hi - lo) * (1 + 0x1p-40);
   tree.depth = std::max(std::abs(lo), std::abs(hi));
+  tree.least_slope = 0x1p-40 * tree.width / tree.depth;
 }
 
 class FrameWriter {
@@ -90,12 +91,12 @@ class FrameWriter {
   void write_node(size_t index) {
     const WideItem& item = plan_.items()[index];
     auto* node = new (tree_.memory.data() + item.offset) FrameNode{};
-    std::array<size_t, kWidth> children{};
+    std::array<size_t, kFrameWidth> children{};
     for (size_t i = 0; i < item.children; ++i) children[i] = item.first_child + i;
     const auto depth = [&](size_t child) { return plan_.bounds(plan_.items()[child]).lo.z; };
     std::stable_sort(children.begin(), children.begin() + item.children,
                      [&](size_t a, size_t b) { return depth(a) > depth(b); });
-    for (size_t lane = 0; lane < kWidth; ++lane) {
+    for (size_t lane = 0; lane < kFrameWidth; ++lane) {
       const bool is_there = lane < item.children;
       const size_t child = children[lane];
       for (int axis = 0; axis < 3; ++axis) {
@@ -117,13 +118,13 @@ class FrameWriter {
 
 FrameMemory write_frame_tree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleCorners> corners,
                              const WideOptions& options) {
-  validate(options);
+  validate(options, kFrameWidth);
   FrameMemory result;
   result.frame = frame;
   result.corners = std::move(corners);
   if (tree.nodes.empty()) return result;
   const TriangleCorners& triangles = *result.corners;
-  const WideForm form{sizeof(FrameNode), FrameLeaf::size,
+  const WideForm form{kFrameWidth, sizeof(FrameNode), FrameLeaf::size,
                       [&](uint32_t triangle) { return bounds_of(frame, triangles.at_id(triangle)); }};
   const WidePlan plan(tree, options, form);
   set_sizes(result, plan.root_bounds());

@@ -77,4 +77,13 @@ bool occluded(const Bvh& bvh, const TriangleMesh& mesh, const Ray& ray, const Se
   return counters ? any<true>(bvh, mesh, ray, options, counters) : any<false>(bvh, mesh, ray, options, nullptr);
 }
 
+std::vector<Ray> end_at_hits(std::span<const Ray> rays, const Bvh& bvh, const TriangleMesh& mesh) {
+  std::vector<Ray> ended(rays.begin(), rays.end());
+  for (Ray& ray : ended) {
+    const Hit hit = intersect(bvh, mesh, ray);
+    if (is_hit(hit)) ray.tmax = hit.t;
+  }
+  return ended;
+}
+
 }  // namespace raygrain

@@ -8,18 +8,19 @@
 
 namespace raygrain {
 
-void validate(const WideOptions& options) {
+void validate(const WideOptions& options, size_t width) {
   const auto check = [](bool good, const char* field, const char* range) {
     if (!good) throw Error(ErrorCode::kUsage, std::string("WideOptions::") + field, std::string("must be ") + range);
   };
-  check(options.max_leaf_size >= 1 && options.max_leaf_size <= kWidth, "max_leaf_size", "1 ... 8");
+  check(options.max_leaf_size >= 1 && options.max_leaf_size <= width, "max_leaf_size",
+        width == kWidth ? "1 ... 8" : "1 ... 16");
   for (const float cost : {options.costs.node, options.costs.leaf, options.costs.triangle})
     check(cost >= 0 && cost <= 1e6f, "costs", "0 ... 1e6");
 }
 
 WidePlan::WidePlan(const Bvh& tree, const WideOptions& options, const WideForm& form)
     : tree_(tree), options_(options), form_(form), node_bytes_(form.node_bytes) {
-  validate(options);
+  validate(options, form.width);
   copy_binary();
   measure_nodes();
   for (size_t i = binary_.size(); i-- > 0;) price(i);
@@ -68,7 +69,7 @@ void WidePlan::measure_nodes() {
 }
 
 float WidePlan::node_cost(size_t i) const {
-  return costs_[i][kWidth] + measures_[i] * options_.costs.node;
+  return costs_[i][form_.width] + measures_[i] * options_.costs.node;
 }
 float WidePlan::leaf_cost(size_t i) const {
   return measures_[i] * (options_.costs.leaf + options_.costs.triangle * static_cast<float>(binary_[i].count));
@@ -83,7 +84,7 @@ void WidePlan::price(size_t i) {
     costs.fill(leaf_cost(i));
     return;
   }
-  for (size_t places = 2; places <= kWidth; ++places) {
+  for (size_t places = 2; places <= form_.width; ++places) {
     costs[places] = split_cost(i, places, 1);
     for (size_t n = 2; n < places; ++n) costs[places] = std::min(costs[places], split_cost(i, places, n));
   }
@@ -92,7 +93,7 @@ void WidePlan::price(size_t i) {
     costs[1] = leaf_cost(i);
     binary_[i].merged = true;
   }
-  for (size_t places = 2; places <= kWidth; ++places) costs[places] = std::min(costs[places], costs[places - 1]);
+  for (size_t places = 2; places <= form_.width; ++places) costs[places] = std::min(costs[places], costs[places - 1]);
 }
 
 /// Appends the subtrees that the triangles of `i` become in at most `places` places.
@@ -121,7 +122,7 @@ void WidePlan::plan() {
     if (is_wide_leaf(root))
       roots.push_back(root);  // the whole tree is one leaf: the only child of the root node
     else
-      collect_halves(root, kWidth, roots);
+      collect_halves(root, form_.width, roots);
     // The most probable last: any hit takes the last first.
     std::ranges::stable_sort(roots, {}, [&](uint32_t i) { return measures_[i]; });
     plan_children(index, roots, pending);

@@ -16,7 +16,7 @@
 namespace raygrain {
 
 /// Throws Error (kUsage, naming the field).
-void validate(const WideOptions& options);
+void validate(const WideOptions& options, size_t width = kWidth);
 
 /// A node or leaf of the wide tree to be.
 struct WideItem {
@@ -27,8 +27,11 @@ struct WideItem {
   bool is_leaf() const { return children == 0; }
 };
 
+inline constexpr size_t kMostWidth = 16;
+
 /// The form of what is written.
 struct WideForm {
+  size_t width;  // children of a node and triangles of a leaf, at most; no more than kMostWidth
   size_t node_bytes;
   std::function<size_t(size_t count)> leaf_bytes;    // of a leaf with so many primitives
   std::function<Bounds(uint32_t primitive)> bounds;  // for leaves that must be halved
@@ -61,7 +64,7 @@ class WidePlan {
     uint32_t first = 0, count = 0;  // a leaf's prims; `count` of an inner node: all triangles below
     bool merged = false;            // an inner node whose triangles are best put into one leaf
   };
-  using Costs = std::array<float, kWidth + 1>;  // [n]: of the triangles in at most n places; [0] is not used
+  using Costs = std::array<float, kMostWidth + 1>;  // [n]: of the triangles in at most n places; [0] is not used
 
   void copy_binary();
   void halve_leaf(size_t index);

@@ -26,6 +26,7 @@ TEST(Help, EveryCommandExplainsItself) {
                                                        {"analyze"},
                                                        {"refit"},
                                                        {"recipes"},
+                                                       {"report"},
                                                        {"scene"},
                                                        {"scene", "generate"},
                                                        {"scene", "convert"},

@@ -126,7 +126,7 @@ TEST(RayFrame, SegmentsAndColumnsHoldTheRay) {
       FrameSegment s;
       const FrameFit fit = make_segment(frame, ray, depths, s);
       if (fit == FrameFit::kUnfit) continue;
-      const Column column = to_column(s);
+      const FrameColumn column = to_column(s);
       const double size = test::diameter(area.region()), speed = length(to_double(ray.direction));
       const double first = std::max<double>(ray.tmin, -2 * size / speed);
       const double last = std::min<double>(ray.tmax, 2 * size / speed);

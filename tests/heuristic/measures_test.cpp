@@ -172,5 +172,25 @@ TEST(Measures, ProjectedAreaAgreesWithSampledRays) {
   EXPECT_NEAR(squares / counted, 1, 0.25);
 }
 
+// Rays fall on a lid that covers half of a room: what is below the lid hardly counts, what is beside it counts in full.
+TEST(VisibleMeasure, CountsWhatIsHiddenLess) {
+  std::vector<Ray> rays;
+  Random random(3);
+  for (int i = 0; i < 4000; ++i) {
+    const auto x = static_cast<float>(random.uniform(-1, 1)), y = static_cast<float>(random.uniform(-1, 1));
+    rays.push_back({{x, y, 1}, {0, 0, -1}, 0, x < 0 ? 0.1f : 2.0f});
+  }
+  const RayMeasure base = directional_measure({0, 0, 1}), visible = visible_measure(base, rays);
+  const Bounds hidden{{-0.9f, -0.5f, -0.9f}, {-0.4f, 0.5f, -0.4f}}, open{{0.4f, -0.5f, -0.9f}, {0.9f, 0.5f, -0.4f}};
+  const Bounds above{{-0.9f, -0.5f, 0.94f}, {-0.4f, 0.5f, 1}};
+  EXPECT_LT(visible(hidden), 0.05f * base(hidden));
+  EXPECT_NEAR(visible(open), base(open), 0.02f * base(open));
+  EXPECT_NEAR(visible(above), base(above), 0.05f * base(above));
+  const RayMeasure unknown = visible_measure(base, {});  // nothing is known: the base alone
+  EXPECT_EQ(unknown(hidden), base(hidden));
+  for (const Bounds& far : {Bounds{{50, 50, 50}, {51, 51, 51}}, Bounds{{-50, -50, -50}, {50, 50, 50}}})
+    EXPECT_TRUE(visible(far) >= 0 && visible(far) <= base(far));
+}
+
 }  // namespace
 }  // namespace raygrain

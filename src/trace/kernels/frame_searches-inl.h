@@ -29,7 +29,7 @@ HWY_INLINE size_t take_lane(uint32_t& bits) {
 
 HWY_INLINE void fetch(const FrameMemory& tree, FrameRef child) {
   const std::byte* lines = tree.at(child);
-  for (size_t i = 0; i < 4; ++i) hwy::Prefetch(lines + i * kCacheLine);
+  for (size_t i = 0; i < 7; ++i) hwy::Prefetch(lines + i * kCacheLine);
 }
 
 HWY_INLINE bool confirm(const FrameMemory& tree, uint32_t id, const Ray& ray, Hit& hit) {
@@ -64,13 +64,13 @@ HWY_INLINE void count_leaf(FrameRef leaf, TraceCounters* counters) {
 /// depths, so they need no sorting.
 struct FrameStack {
   size_t size = 0;
-  alignas(32) FrameRef refs[kFrameStackSize];  // NOLINT: filled as far as `size` says
+  alignas(64) FrameRef refs[kFrameStackSize];  // NOLINT: filled as far as `size` says
 
   template <class Mask>
-  HWY_INLINE void push(const FrameNode& node, size_t part, Mask mask) {
-    RAYGRAIN_CHECK_LT(size, kFrameStackSize - kWidth);
-    const RefTag tag;
-    const auto children = hn::Load(tag, node.child + part * kLanes);
+  HWY_INLINE void push(const FrameNode& node, size_t at, Mask mask) {
+    RAYGRAIN_CHECK_LT(size, kFrameStackSize - kFrameWidth);
+    const FrameRefTag tag;
+    const auto children = hn::Load(tag, node.child + at);
     const auto bits = hn::RebindMask(tag, mask);
     hn::StoreU(hn::Compress(children, bits), tag, refs + size);
     size += hn::CountTrue(tag, bits);
@@ -79,14 +79,14 @@ struct FrameStack {
 
 /// The same with the depth at which each is entered.
 struct OrderedStack : FrameStack {
-  alignas(32) float depths[kFrameStackSize];  // NOLINT
+  alignas(64) float depths[kFrameStackSize];  // NOLINT
 
   template <bool kAscending, class Mask>
-  HWY_INLINE void push(const FrameNode& node, size_t part, Mask mask) {
-    const Tag tag;
-    const float* sides = (kAscending ? node.lower[2] : node.upper[2]) + part * kLanes;
+  HWY_INLINE void push(const FrameNode& node, size_t at, Mask mask) {
+    const FrameTag tag;
+    const float* sides = (kAscending ? node.lower[2] : node.upper[2]) + at;
     hn::StoreU(hn::Compress(hn::Load(tag, sides), mask), tag, depths + size);
-    FrameStack::push(node, part, mask);
+    FrameStack::push(node, at, mask);
   }
   /// Rays that run against the order of the node.
   HWY_INLINE void reverse(size_t from) {
@@ -172,24 +172,25 @@ Hit nearest_in_frame(const FrameMemory& tree, const FrameQuery& query, const Ray
     if (triangles_of(current) == 0) {
       const FrameNode& node = tree.node(current);
       count_node<kCounting>(node, counters);
-      const Eight first = broadcast(lo), last = broadcast(hi);
+      const FrameVec first = all(lo), last = all(hi);
       const size_t size = stack.size;
-      for (size_t part = 0; part < kParts; ++part)
-        stack.template push<kAscending>(node, part, boxes(node, part, first, last));
+      for (size_t at = 0; at < kFrameWidth; at += kFrameLanes)
+        stack.template push<kAscending>(node, at, boxes(node, at, first, last));
       if (!kAscending) stack.reverse(size);
     } else {
       const FrameLeaf leaf = tree.leaf(current);
       count_leaf<kCounting>(current, counters);
-      FrameCandidates found;
-      uint32_t bits = triangles(leaf, lo, hi, found);
-      if (bits != 0) {
-        alignas(32) float nearest[kWidth], farthest[kWidth];
-        store(found.first, nearest);
-        store(found.last, farthest);
+      for (size_t at = 0; at < leaf.count; at += kFrameLanes) {
+        FrameCandidates found;
+        uint32_t bits = triangles({leaf, at}, all(lo), all(hi), found);
+        if (bits == 0) continue;
+        alignas(64) float nearest[kFrameLanes], farthest[kFrameLanes];
+        hn::Store(found.first, FrameTag(), nearest);
+        hn::Store(found.last, FrameTag(), farthest);
         do {
           const size_t lane = take_lane(bits);
           if (kPruning && pending.is_beyond(nearest[lane], farthest[lane])) continue;
-          pending.add(leaf.id(lane), nearest[lane], farthest[lane], (found.sure >> lane & 1) != 0);
+          pending.add(leaf.id(at + lane), nearest[lane], farthest[lane], (found.sure >> lane & 1) != 0);
         } while (bits != 0);
       }
     }
@@ -210,7 +211,7 @@ bool any_in_frame(const FrameMemory& tree, const FrameQuery& query, const Ray& r
   const Boxes boxes(query);
   const Triangles triangles(tree, query);
   const float lo = query.column.box.lo.z, hi = query.column.box.hi.z;
-  const Eight first = broadcast(lo), last = broadcast(hi);
+  const FrameVec first = all(lo), last = all(hi);
   bool hit_something = false;
   FrameStack stack;
   FrameRef current = frame_ref(0, 0);
@@ -218,23 +219,26 @@ bool any_in_frame(const FrameMemory& tree, const FrameQuery& query, const Ray& r
     if (triangles_of(current) == 0) {
       const FrameNode& node = tree.node(current);
       count_node<kCounting>(node, counters);
-      for (size_t part = 0; part < kParts; ++part) stack.push(node, part, boxes(node, part, first, last));
+      for (size_t at = 0; at < kFrameWidth; at += kFrameLanes) stack.push(node, at, boxes(node, at, first, last));
     } else {
       const FrameLeaf leaf = tree.leaf(current);
       count_leaf<kCounting>(current, counters);
-      FrameCandidates found;
-      uint32_t bits = triangles(leaf, lo, hi, found);
-      if (bits != 0 && found.sure != 0) {
-        if (kPruning) return true;
-        hit_something = true;
-      }
-      while (bits != 0) {
-        const size_t lane = take_lane(bits);
-        if constexpr (kCounting) ++counters->triangle_tests;
-        Hit hit;
-        if (!confirm(tree, leaf.id(lane), ray, hit)) continue;
-        if (kPruning) return true;
-        hit_something = true;
+      for (size_t at = 0; at < leaf.count; at += kFrameLanes) {
+        FrameCandidates found;
+        uint32_t bits = triangles({leaf, at}, first, last, found);
+        if (bits == 0) continue;
+        if (found.sure != 0) {
+          if (kPruning) return true;
+          hit_something = true;
+        }
+        do {
+          const size_t lane = take_lane(bits);
+          if constexpr (kCounting) ++counters->triangle_tests;
+          Hit hit;
+          if (!confirm(tree, leaf.id(at + lane), ray, hit)) continue;
+          if (kPruning) return true;
+          hit_something = true;
+        } while (bits != 0);
       }
     }
     if (stack.size == 0) return hit_something;

@@ -1,0 +1,116 @@
+// Single rays through accelerators with every kind of structure, against brute force; and what explain() says.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "raygrain/accelerator.h"
+#include "raygrain/error.h"
+
+#include "accel/area_families.h"
+#include "base/parallel.h"
+#include "support/mesh_families.h"
+
+namespace raygrain {
+namespace {
+
+bool identical(const Hit& a, const Hit& b) {
+  using Bits = std::array<uint32_t, 4>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
+
+AcceleratorOptions options_of(LocalSpace space, bool covered) {
+  AcceleratorOptions options;
+  options.space = space;
+  if (!covered) options.coverage.reset();
+  return options;
+}
+
+size_t rays_per_family() {
+  const char* variable = std::getenv("RAYGRAIN_TEST_SCALE");
+  const std::string scale = variable != nullptr ? variable : "";
+  if (scale == "full") return 300'000;  // more than ten million over the families and options
+  return scale == "small" ? 100 : 800;
+}
+
+TEST(Classification, EveryStructureEqualsBruteForce) {
+  AcceleratorCounters all;
+  const auto families = test::mesh_families(31);
+  for (size_t f = 0; f < families.size(); ++f) {
+    const TriangleMesh& mesh = families[f].mesh;
+    const auto areas = test::areas_around(mesh, f + 3);
+    std::vector<Ray> rays = test::rays_of_areas(mesh, areas, rays_per_family(), f);
+    for (const Ray& ray : test::aimed_rays(mesh, rays_per_family() / 4, f)) rays.push_back(ray);
+    std::vector<Hit> expected(rays.size());
+    parallel_for(rays.size(), 64, 0, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i) expected[i] = intersect_reference(mesh, rays[i]);
+    });
+    for (const auto& [space, covered] :
+         {std::pair{LocalSpace::kRay, false}, std::pair{LocalSpace::kRay, true}, std::pair{LocalSpace::kWorld, true}}) {
+      const Accelerator scene(mesh, areas, options_of(space, covered));
+      AcceleratorCounters counters;
+      for (size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_TRUE(identical(scene.intersect(rays[i]), expected[i])) << families[f].name << " ray " << i;
+        ASSERT_TRUE(identical(scene.intersect(rays[i], &counters), expected[i])) << families[f].name << " ray " << i;
+        ASSERT_EQ(scene.occluded(rays[i]), is_hit(expected[i])) << families[f].name << " ray " << i;
+        ASSERT_EQ(scene.occluded(rays[i], &counters), is_hit(expected[i])) << families[f].name << " ray " << i;
+      }
+      EXPECT_EQ(counters.rays, 2 * rays.size());
+      EXPECT_LE(counters.columns + counters.cones, counters.local_searches);
+      EXPECT_TRUE(covered || counters.covered == 0);
+      EXPECT_TRUE(space == LocalSpace::kRay || counters.columns + counters.cones == 0);
+      all.add(counters);
+    }
+  }
+  EXPECT_GT(all.covered, all.rays / 50);
+  EXPECT_GT(all.columns, all.rays / 50);
+  EXPECT_GT(all.cones, all.rays / 50);
+}
+
+TEST(Classification, AGivenFrameIsTaken) {
+  const TriangleMesh mesh = test::mesh_families(2).front().mesh;
+  const InfluenceArea sun = directional_light_area("sun", {0.5f, -0.7f, 0.5f}, mesh_bounds(mesh));
+  for (const FrameKind kind : {FrameKind::kRotation, FrameKind::kShearX, FrameKind::kShearY, FrameKind::kShearZ}) {
+    AcceleratorOptions options = options_of(LocalSpace::kRay, false);
+    options.frame = kind;
+    const Accelerator scene(mesh, {sun}, options);
+    ASSERT_TRUE(scene.local_trees()[0].in_ray_space.has_value());
+    EXPECT_EQ(scene.local_trees()[0].in_ray_space->frame().kind, kind);
+  }
+  // A box with axis-parallel faces: a shear keeps them thin, the rotation does not.
+  const Accelerator chosen(mesh, {sun}, options_of(LocalSpace::kRay, false));
+  EXPECT_NE(chosen.local_trees()[0].in_ray_space->frame().kind, FrameKind::kRotation);
+  EXPECT_GT(chosen.wide_memory_bytes(),
+            Accelerator(mesh, {sun}, options_of(LocalSpace::kWorld, false)).wide_memory_bytes());
+}
+
+TEST(Classification, ExplainsItself) {
+  const TriangleMesh mesh = test::mesh_families(2).front().mesh;
+  const InfluenceArea sun = directional_light_area("sun", {0.5f, -0.7f, 0.5f}, mesh_bounds(mesh));
+  const Accelerator scene(mesh, {sun}, options_of(LocalSpace::kRay, true));
+  AcceleratorCounters counters;
+  scene.occluded({{0, 0, 0}, {1, 0, 0}}, &counters);
+  const Explanation explanation = scene.explain(counters, 100);
+  ASSERT_EQ(explanation.areas.size(), 1u);
+  const AreaReport& area = explanation.areas[0];
+  EXPECT_EQ(area.name, "sun");
+  EXPECT_EQ(area.triangles, mesh.triangle_count());
+  EXPECT_GT(area.build_seconds, 0);
+  EXPECT_GT(area.memory_bytes, 0u);
+  EXPECT_GT(area.area_nanoseconds, 0);
+  EXPECT_GT(area.global_nanoseconds, 0);
+  EXPECT_TRUE(area.break_even_rays > 0);
+  EXPECT_NE(area.structures.find("tree in ray space (shear_"), std::string::npos) << area.structures;
+  const std::string text = to_text(explanation);
+  EXPECT_NE(text.find("sun: coverage, tree in ray space"), std::string::npos) << text;
+  EXPECT_NE(text.find("of 1 rays: 0.0 % answered by coverage"), std::string::npos) << text;
+  EXPECT_TRUE(Accelerator(mesh).explain().areas.empty());
+  EXPECT_THROW(scene.explain({}, 0), Error);
+}
+
+}  // namespace
+}  // namespace raygrain
