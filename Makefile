@@ -10,7 +10,8 @@ CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_
 
 BENCH ?= --quick
 
-.PHONY: help build demo bench bench-dependencies report-page report-page-test report-page-dependencies test test-full asan-test release-test tsan-test clang-test coverage format check-format tidy \
+.PHONY: help build demo study bench bench-dependencies report-page report-page-test report-page-dependencies \
+        test test-full asan-test release-test tsan-test clang-test neon-test coverage format check-format tidy \
         dependencies full-dependencies install clean
 
 help:            ## this list
@@ -38,6 +39,14 @@ bench: bench-dependencies ## against Embree on the same rays; BENCH="--json FILE
 demo: build      ## build, then compare the paper's heuristics on a built-in city under a low sun
 	@scripts/demo.sh $(RELEASE)/bin/raygrain build/demo
 
+SCENES ?= ../shared/scenes
+STUDIES ?= paper corrected
+
+study: build     ## the paper's evaluation, sound and corrected, and its report, into build/study; SCENES=DIR, STUDIES="published areas ..."
+	@for study in $(STUDIES); do \
+	  $(RELEASE)/bin/raygrain study $$study --scenes $(SCENES) --jobs $(JOBS) --out build/study/$$study || exit 1; done
+	@$(RELEASE)/bin/raygrain report $(STUDIES:%=build/study/%) --out build/study/report.html --markdown build/study/report.md
+
 report-page-dependencies:
 	@scripts/install-dependencies.sh report-page
 
@@ -58,6 +67,15 @@ report-page-test: build report-page ## the report in headless Chromium: every ch
 	@scripts/install-dependencies.sh browser
 	@cd $(PAGE) && npm test --silent -- ../$(RELEASE)/bin/raygrain ../build/report-page-test
 
+# The paper's models, where a folder beside the checkout has them; without them the public scenes alone.
+SCENES ?= $(wildcard ../shared/scenes)
+STUDY := build/study
+
+study: build     ## the paper's evaluation, corrected, as a report: build/study/report.html
+	@for study in paper corrected; do \
+	   $(RELEASE)/bin/raygrain study $$study $(if $(SCENES),--scenes $(SCENES)) --jobs $(JOBS) --out $(STUDY)/$$study || exit 1; done
+	@$(RELEASE)/bin/raygrain report $(STUDY)/paper/results.csv $(STUDY)/corrected/results.csv --out $(STUDY)/report.html
+
 test: dependencies ## everything a commit must pass: sanitizers on the core, then all tests in release
 	@$(MAKE) --no-print-directory asan-test
 	@$(MAKE) --no-print-directory release-test
@@ -77,6 +95,7 @@ test-full: full-dependencies ## all of it: ThreadSanitizer, Clang, coverage, cla
 	@$(MAKE) --no-print-directory tidy
 	@$(MAKE) --no-print-directory tsan-test
 	@$(MAKE) --no-print-directory clang-test
+	@$(MAKE) --no-print-directory neon-test
 	@$(MAKE) --no-print-directory coverage
 	@$(MAKE) --no-print-directory asan-test
 	@$(call PRESET,release)
@@ -93,6 +112,9 @@ clang-test:
 	@$(call PRESET,clang)
 	@cmake --build build/clang -j $(JOBS)
 	@cd build/clang && $(CTEST)
+
+neon-test:       ## the searches and their tests for 64-bit Arm, in an emulator
+	@JOBS=$(JOBS) scripts/neon-test.sh build/neon
 
 coverage:        ## line coverage of src/, as text and HTML in build/coverage
 	@$(call PRESET,coverage)

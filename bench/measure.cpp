@@ -96,18 +96,7 @@ class Measurement {
       row.embree_single_mode = modes[i].name();
       best_single = answers_[first + i].get();
     }
-    if (best_single != nullptr) count_differences(*answers_[0], *best_single, row);
-  }
-
-  void count_differences(const Answers& ours, const Answers& theirs, Row& row) const {
-    for (size_t i = 0; i < set_.rays.size(); ++i) {
-      if (!differ(set_.any, ours, theirs, i)) continue;
-      ++row.differences;
-      if (row.oracle_asked == kMostQuestions) continue;
-      ++row.oracle_asked;
-      row.oracle_agrees += set_.any ? occluded_reference(mesh_, set_.rays[i]) == (ours.flags[i] != 0)
-                                    : intersect_reference(mesh_, set_.rays[i]) == ours.hits[i];
-    }
+    if (best_single != nullptr) count_differences(mesh_, set_, *answers_[0], *best_single, row);
   }
 
   std::vector<Row> rows_of(const std::vector<Entrant>& ours, const std::vector<double>& seconds, const Row& row) const {
@@ -133,6 +122,18 @@ class Measurement {
 };
 
 }  // namespace
+
+void count_differences(const TriangleMesh& mesh, const BenchRays& set, const Answers& ours, const Answers& theirs,
+                       Row& row) {
+  for (size_t i = 0; i < set.rays.size(); ++i) {
+    if (!differ(set.any, ours, theirs, i)) continue;
+    ++row.differences;
+    if (row.oracle_asked == kMostQuestions) continue;
+    ++row.oracle_asked;
+    row.oracle_agrees += set.any ? occluded_reference(mesh, set.rays[i]) == (ours.flags[i] != 0)
+                                 : intersect_reference(mesh, set.rays[i]) == ours.hits[i];
+  }
+}
 
 void measure(const Row& row, const TriangleMesh& mesh, const BenchRays& set, const std::vector<Entrant>& entrants,
              const Peer& peer, unsigned threads, Results& results) {

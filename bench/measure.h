@@ -23,4 +23,8 @@ struct Entrant {
 void measure(const Row& row, const TriangleMesh& mesh, const BenchRays& set, const std::vector<Entrant>& entrants,
              const Peer& peer, unsigned threads, Results& results);
 
+/// Counts the rays about which two tracers differ, and puts up to ten of them to the oracle.
+void count_differences(const TriangleMesh& mesh, const BenchRays& set, const Answers& ours, const Answers& theirs,
+                       Row& row);
+
 }  // namespace raygrain::bench

@@ -30,6 +30,13 @@ std::optional<double> ratio_of(const BuildRow& row) {
   return row.embree_bytes > 0 ? ratio(row.embree_seconds, row.raygrain_seconds) : std::nullopt;
 }
 
+std::optional<double> ratio_sorted(const Row& row) {
+  return ratio(row.raygrain_mrays, row.embree_sorted_mrays);
+}
+std::optional<double> ratio_global(const Row& row) {
+  return ratio(row.raygrain_mrays, row.global_mrays);
+}
+
 std::string text(const std::optional<double>& x) {
   return x ? fmt::format("{:.3f}", *x) : "-";
 }
@@ -52,7 +59,14 @@ class GeometricMean {
 };
 
 struct Means {
-  GeometricMean single, best;
+  GeometricMean single, best, sorted, global;
+
+  void add(const Row& row) {
+    single.add(ratio_single(row));
+    best.add(ratio_best(row));
+    sorted.add(ratio_sorted(row));
+    global.add(ratio_global(row));
+  }
 };
 
 /// Keys: SUITE_API_N_threads, and the same by query.
@@ -61,9 +75,16 @@ std::map<std::string, Means> means_of_rows(const Results& results) {
   for (const Row& row : results.rows)
     for (const std::string& query : {std::string(), row.query + "_"}) {
       Means& m = all[fmt::format("{}_{}_{}{}_threads", row.suite, row.api, query, row.threads)];
-      m.single.add(ratio_single(row));
-      m.best.add(ratio_best(row));
+      m.add(row);
     }
+  return all;
+}
+
+/// Of rays with structure. Keys: rays_SET_API_N_threads.
+std::map<std::string, Means> means_of_sets(const Results& results) {
+  std::map<std::string, Means> all;
+  for (const Row& row : results.rows)
+    if (row.suite == "rays") all[fmt::format("rays_{}_{}_{}_threads", row.rays, row.api, row.threads)].add(row);
   return all;
 }
 
@@ -97,7 +118,7 @@ std::string text_of_differences(const Row& row) {
                                             row.oracle_agrees, row.oracle_asked);
 }
 
-enum class Table { kNone, kRows, kBuilds };
+enum class Table { kNone, kRows, kStructured, kBuilds };
 
 /// A table that goes on needs no new header.
 bool starts(Table table) {
@@ -112,22 +133,34 @@ double mebibytes(size_t bytes) {
 }
 
 Json to_json(const Row& r) {
-  return {{"suite", r.suite},
-          {"scene", r.scene},
-          {"triangles", r.triangles},
-          {"rays", r.rays},
-          {"query", r.query},
-          {"api", r.api},
-          {"threads", r.threads},
-          {"raygrain_mrays", r.raygrain_mrays},
-          {"raygrain_tree", r.tree},
-          {"embree_single_mrays", r.embree_single_mrays},
-          {"embree_single_mode", r.embree_single_mode},
-          {"embree_best_mrays", r.embree_best_mrays},
-          {"embree_best_mode", r.embree_best_mode},
-          {"ratio_single", to_json(ratio_single(r))},
-          {"ratio_best", to_json(ratio_best(r))},
-          {"differences", r.differences}};
+  Json json{{"suite", r.suite},
+            {"scene", r.scene},
+            {"triangles", r.triangles},
+            {"rays", r.rays},
+            {"query", r.query},
+            {"api", r.api},
+            {"threads", r.threads},
+            {"raygrain_mrays", r.raygrain_mrays},
+            {"raygrain_tree", r.tree},
+            {"embree_single_mrays", r.embree_single_mrays},
+            {"embree_single_mode", r.embree_single_mode},
+            {"embree_best_mrays", r.embree_best_mrays},
+            {"embree_best_mode", r.embree_best_mode},
+            {"ratio_single", to_json(ratio_single(r))},
+            {"ratio_best", to_json(ratio_best(r))},
+            {"differences", r.differences}};
+  if (r.suite != "rays") return json;
+  const auto rays = [](double count) { return std::isfinite(count) ? Json(std::ceil(count)) : Json(); };
+  json.update({{"embree_sorted_mrays", r.embree_sorted_mrays},
+               {"embree_sorted_mode", r.embree_sorted_mode},
+               {"ratio_sorted", to_json(ratio_sorted(r))},
+               {"global_mrays", r.global_mrays},
+               {"ratio_global", to_json(ratio_global(r))},
+               {"build_seconds", r.build_seconds},
+               {"memory_bytes", r.memory_bytes},
+               {"break_even_rays", rays(r.break_even_rays)}});
+  if (r.turn >= 0) json.update({{"turn", r.turn}, {"cost", r.cost}, {"global_cost", r.global_cost}});
+  return json;
 }
 
 Json to_json(const BuildRow& b) {
@@ -148,6 +181,11 @@ Json geometric_means(const Results& results) {
   Json json = Json::object();
   for (const auto& [name, m] : means_of_rows(results))
     json[name] = {{"ratio_single", to_json(m.single.value())}, {"ratio_best", to_json(m.best.value())}};
+  for (const auto& [name, m] : means_of_sets(results))
+    json[name] = {{"ratio_single", to_json(m.single.value())},
+                  {"ratio_best", to_json(m.best.value())},
+                  {"ratio_sorted", to_json(m.sorted.value())},
+                  {"ratio_global", to_json(m.global.value())}};
   for (const auto& [name, mean] : means_of_builds(results)) json[name] = {{"ratio", to_json(mean.value())}};
   for (const auto& [name, m] : scaling(results))
     json["scaling_" + name] = {{"raygrain", to_json(m.single.value())}, {"embree_single", to_json(m.best.value())}};
@@ -156,8 +194,31 @@ Json geometric_means(const Results& results) {
 
 }  // namespace
 
+namespace {
+
+void print_structured(const Row& row) {
+  constexpr const char* kFormat =
+      "{:<14} {:>8} {:<24} {:<7} {:>3} {:>8} {:>8} {:>7} {:>7} {:>7} {:>7} {:>8} {:>8} {:>10}  {:<24} {}\n";
+  if (starts(Table::kStructured))
+    fmt::print(kFormat, "\nscene", "triangles", "rays", "api", "thr", "Mrays/s", "Embree", "best", "sorted", "single",
+               "global", "build s", "MiB", "break-even", "best mode", "differences");
+  const std::string name = row.turn >= 0 ? fmt::format("{} {}", row.rays, row.turn) : row.rays;
+  const std::string difference = row.turn >= 0
+                                     ? fmt::format("cost {:.2f}, of the world's tree {:.2f}", row.cost, row.global_cost)
+                                     : text_of_differences(row);
+  fmt::print(kFormat, row.scene, row.triangles, name, row.api, row.threads, fmt::format("{:.2f}", row.raygrain_mrays),
+             fmt::format("{:.2f}", row.embree_best_mrays), text(ratio_best(row)), text(ratio_sorted(row)),
+             text(ratio_single(row)), text(ratio_global(row)), fmt::format("{:.3f}", row.build_seconds),
+             fmt::format("{:.2f}", mebibytes(row.memory_bytes)), fmt::format("{:.3g}", row.break_even_rays),
+             row.embree_best_mode, difference);
+  std::fflush(stdout);
+}
+
+}  // namespace
+
 void report(const Row& row, Results& results) {
   results.rows.push_back(row);
+  if (row.suite == "rays") return print_structured(row);
   constexpr const char* kFormat =
       "{:<18} {:>9} {:<16} {:<8} {:<12} {:>3} {:>9} {:<18} {:>9} {:>7} {:>9} {:>7}  {:<26} {}\n";
   if (starts(Table::kRows))
@@ -190,6 +251,9 @@ void print_summary(const Results& results) {
   for (const auto& [name, m] : means_of_rows(results))
     fmt::print("{:<36} to Embree's best single rays {}, to its best mode {}\n", name, text(m.single.value()),
                text(m.best.value()));
+  for (const auto& [name, m] : means_of_sets(results))
+    fmt::print("{:<48} to best mode {}, on sorted rays {}, to single rays {}, to the global tree {}\n", name,
+               text(m.best.value()), text(m.sorted.value()), text(m.single.value()), text(m.global.value()));
   for (const auto& [name, mean] : means_of_builds(results)) fmt::print("{:<36} {}\n", name, text(mean.value()));
   fmt::print("\nspeed on all threads by that on one\n");
   for (const auto& [name, m] : scaling(results))

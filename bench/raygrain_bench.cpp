@@ -15,7 +15,7 @@
 namespace raygrain::bench {
 
 std::vector<Suite> suites() {
-  return {{"general", run_general}};
+  return {{"general", run_general}, {"rays", run_rays}};
 }
 
 namespace {

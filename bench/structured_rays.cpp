@@ -81,11 +81,8 @@ StructuredRays lamp(const TriangleMesh& mesh, size_t count) {
 StructuredRays disc(const TriangleMesh& mesh, size_t count, double degrees, const std::string& name) {
   InfluenceArea area = directional_light_area("disc", kSun, mesh_bounds(mesh));
   area.tolerance = tolerance_of(degrees);
-  StructuredRays s{{name, true, cast_rays(SurfaceRays{TowardsDirection{kSun}}, mesh, count, 3)},
-                   Sharing::kNothing,
-                   {},
-                   {},
-                   {area}};
+  StructuredRays s{
+      {name, true, cast_rays(SurfaceRays{TowardsDirection{kSun}}, mesh, count, 3)}, Sharing::kNothing, {}, {}, {area}};
   Random random(13);
   const Vec3d axis = normalized(-to_double(kSun)), right = normalized(cross(axis, Vec3d{1, 0, 0}));
   const Vec3d up = cross(axis, right);

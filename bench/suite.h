@@ -29,6 +29,16 @@ struct Row {
   std::string embree_single_mode, embree_best_mode;
   size_t differences = 0;                      // hit here and miss there, or t further apart than rounding explains
   size_t oracle_agrees = 0, oracle_asked = 0;  // of the differences: how often brute force gave raygrain's answer
+
+  // Of the suite `rays` alone.
+  double embree_sorted_mrays = 0;  // on rays sorted for it, the time for sorting counted
+  std::string embree_sorted_mode;
+  double global_mrays = 0;           // raygrain's global tree alone, by the same interface
+  double build_seconds = 0;          // of what the areas have beyond the global tree, on all threads
+  size_t memory_bytes = 0;           // the same
+  double break_even_rays = 0;        // from so many rays on the build pays off against the global tree; infinity: never
+  double cost = 0, global_cost = 0;  // of turned scenes: pruned cost per ray; cells and wide nodes 2, triangles 1.2
+  int turn = -1;                     // which of the rotations or directions
 };
 
 struct BuildRow {
@@ -61,6 +71,7 @@ struct Suite {
 std::vector<Suite> suites();
 
 void run_general(const Settings& settings, Results& results);
+void run_rays(const Settings& settings, Results& results);
 
 /// What load_bench_scene takes: the procedural scenes, in small or in both sizes, and the models of settings.scenes.
 std::vector<std::string> scene_sources(const Settings& settings);

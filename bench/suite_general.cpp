@@ -62,7 +62,7 @@ void run_scene(const BenchScene& scene, const Settings& settings, Results& resul
   measure_builds(scene, settings, results);
   const std::vector<NamedTree> trees = build_trees(scene.mesh);
   const Peer peer(scene.mesh);
-  const size_t count = settings.quick ? 50000 : 250000;
+  const size_t count = settings.quick ? 50000 : 100000;
   Row row;
   row.suite = "general";
   row.scene = scene.name;

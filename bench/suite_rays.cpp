@@ -7,8 +7,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include <time.h>
+
 #include "raygrain/trace.h"
 
+#include "base/random.h"
 #include "base/timer.h"
 #include "measure.h"
 #include "peer.h"
@@ -21,19 +24,34 @@ namespace {
 constexpr int kRounds = 5;
 constexpr int kTurns = 20;
 
+/// The accelerators of this suite.
+AcceleratorOptions bench_options() {
+  AcceleratorOptions options;
+  options.quality = Quality::kBalanced;
+  return options;
+}
+
 struct Contestant {
   std::function<void(Answers&)> trace;
   std::unique_ptr<Answers> answers;
   double seconds = std::numeric_limits<double>::infinity();
 };
 
+/// Of this thread's processor, for what runs on it alone: other programs interrupt it without counting.
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
 /// All take turns on the whole set: batches are measured in the size in which they come.
-void race_whole(std::vector<Contestant>& contestants, int rounds) {
+void race_whole(std::vector<Contestant>& contestants, int rounds, unsigned threads) {
   for (int round = 0; round < rounds; ++round)
     for (Contestant& c : contestants) {
       const Timer timer;
+      const double before = processor_seconds();
       c.trace(*c.answers);
-      c.seconds = std::min(c.seconds, timer.seconds());
+      c.seconds = std::min(c.seconds, threads == 1 ? processor_seconds() - before : timer.seconds());
     }
 }
 
@@ -123,7 +141,7 @@ class RaysSuite {
         trace_peer(sorted_modes[i], fresh.set, found, threads);
         unsort(fresh, found, rays.set.any, threads, a);
       }));
-    race_whole(all, kRounds);
+    race_whole(all, kRounds, threads);
     for (size_t k = 1; k < 4; ++k) check_agreement(rays, *all[0].answers, *all[k].answers);
 
     Row row = new_row(rays, threads);
@@ -169,7 +187,8 @@ class RaysSuite {
   static void check_agreement(const StructuredRays& rays, const Answers& a, const Answers& b) {
     for (size_t i = 0; i < rays.set.rays.size(); ++i)
       if (!same_answer(rays.set.any, a, b, i))
-        throw std::logic_error("raygrain's interfaces disagree about ray " + std::to_string(i) + " of " + rays.set.name);
+        throw std::logic_error("raygrain's interfaces disagree about ray " + std::to_string(i) + " of " +
+                               rays.set.name);
   }
 
   /// The scene and its sun turned together, and the fixed scene under as many suns: what obliqueness costs.
@@ -224,7 +243,7 @@ void RaysSuite::measure_turned(const std::string& name, int turn, const Triangle
   std::vector<Contestant> all;
   all.push_back(contestant(rays, [&](Answers& a) { trace_batch(ours.accelerator, rays, a, 1); }));
   all.push_back(contestant(rays, [&](Answers& a) { trace_array(global, rays, a, 1); }));
-  race_whole(all, kRounds);
+  race_whole(all, kRounds, 1);
   Row row = new_row(rays, 1);
   row.rays = name;
   row.api = "batch";

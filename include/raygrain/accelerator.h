@@ -41,10 +41,10 @@ enum class LocalSpace {
 };
 
 struct AcceleratorOptions {
-  Recipe local{"PAH", "ALL", "binned", {}};   // of each area's tree
-  Recipe global{"SAH", "ALL", "binned", {}};  // of the tree that answers all other rays
-  std::optional<Quality> quality;             // of the global tree: replaces its recipe's builder
-  bool reinsert = false;                      // improve the global tree by reinsertion, under its own measure
+  Recipe local{"PAH", "ALL", "binned", {}};         // of each area's tree
+  Recipe global{"SAH", "ALL", "binned", {}, true};  // of the tree that answers all other rays
+  std::optional<Quality> quality;                   // of the global tree: replaces its recipe's builder
+  bool reinsert = false;                            // improve the global tree by reinsertion, under its own measure
   Traversal traversal = Traversal::kWide;
   LocalSpace space = LocalSpace::kWorld;
   std::optional<FrameKind> frame;  // of areas that it suits; the others, and without one: the cheapest by prediction

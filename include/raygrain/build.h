@@ -133,6 +133,11 @@ struct BuildOptions {
   bool split_inseparable = true;
   bool merge_leaves = false;  // build_binned: make a leaf of up to `leaf_size` where splitting costs more
   uint32_t leaf_size = 4;
+  /// build_binned, build_spatial and build_subset: a node of up to `rare_leaf_size` primitives becomes a leaf at once
+  /// where its measure is below `rare_share / primitives` of the root's: so few rays come there that no split can gain
+  /// much, and half of the work of a build is saved. 0: never. For wide trees, whose leaves hold up to 8 triangles.
+  uint32_t rare_leaf_size = 0;
+  float rare_share = 20;
   uint64_t seed = 1;  // of NodeContext::seed
   /// Threads that build_binned and build_spatial use; 0 = all. The tree is the same for any number. With more than one,
   /// `measure` and `orientation` are called from several threads.
@@ -183,8 +188,12 @@ struct BuildLog {
 /// nothing the one with the most even counts. Every node is judged by the primary measure, or by the fallback's below
 /// max_non_fallback_levels. `centroids[i]` is the barycentre of primitive i; it need not lie in its box.
 ///
+/// No centroids at all stand for the centers of the boxes, in every builder: better for ordinary trees (long thin
+/// triangles stand in the middle of the room that they take), but not Algorithm 1.
+///
 /// Deterministic. No primitives give an empty tree. Throws Error kUsage for options out of range, boxes that are empty
-/// or not finite, and centroids that are not finite or not one per box; kBadHeuristic (with the node) for a measure
+/// or not finite, and centroids that are not finite or neither one per box
+/// nor none; kBadHeuristic (with the node) for a measure
 /// that is negative or not finite or an orientation with a wrong axis. Exceptions of user functions pass through.
 Bvh build_paper(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                 BuildLog* log = nullptr);
@@ -192,8 +201,9 @@ Bvh build_paper(std::span<const Bounds> bounds, std::span<const Vec3> centroids,
 /// Binned top-down construction after Wald, "On fast construction of SAH-based bounding volume hierarchies" (2007): one
 /// pass over the primitives for all axes, prefix and suffix sweeps over the slices, the best plane of all axes that the
 /// orientation strategy admits: those whose quality reaches split_plane_quality_threshold, or else the best. Cuts the
-/// box of the centroids into equal slices: `bins`, but no more than 4 + count / 2. Of planes with equal cost the one
-/// with the most even counts wins. Ignores `fallback` and `decision`. Same errors, and kCancelled.
+/// box of the centroids into equal slices: `bins`, but no more than 4 + count / 16; nodes of up to 8 primitives are cut
+/// between any two centroids. Of planes with equal cost the one with the most even counts wins. Ignores `fallback` and
+/// `decision`. Same errors, and kCancelled.
 ///
 /// Parallel, and the same tree for any number of threads; one thread where `cost`, `planes`, `partition` or `stop` is
 /// replaced (`planes` and `partition` also see all `bins`).

@@ -21,6 +21,7 @@ enum class ChartKind {
   kDots,     // one line per group, a dot per series on it
   kPoints,   // a dot at (x, y)
   kLines,    // dots at (x, y), those of a series joined in the order of x
+  kMatrix,   // a row per series, a column per group: values as numbers, coloured by their ratio to `reference`
 };
 
 /// One value; for a mean also what it is the mean of.

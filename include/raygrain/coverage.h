@@ -85,6 +85,12 @@ class Coverage {
                       std::span<const uint32_t> subset = {}, unsigned threads = 1,
                       CoverageCounters* counters = nullptr) const;
 
+  /// Of several coverages with the same eye, lists for each the points (or directions) that are in its window, every
+  /// one in one list at most, ascending; appends the numbers of the others to `rest`. 0 threads = all.
+  static std::vector<std::vector<uint32_t>> divide(std::span<const Coverage* const> coverages,
+                                                   std::span<const Vec3> points, bool are_directions,
+                                                   std::vector<uint32_t>& rest, unsigned threads = 1);
+
   size_t cell_count() const;
   size_t memory_bytes() const;
   double build_seconds() const;

@@ -120,6 +120,10 @@ struct StudyRecipe {
   std::string combo, setting;
   Recipe recipe;
   bool reinsert = false;  // improve the finished tree by reinsertion under its own measure
+  /// In ray space, with the measure of a frame's xy area in place of the recipe's: of the frames that suit the area,
+  /// the one that predicts the least cost. The builder is the recipe's.
+  bool in_frame = false;
+  bool visible = false;  // sample rays, for recipes that have them, end at their first hit
 };
 
 /// Rays of each area: near-plane-uniform by default, `count` for each seed.
@@ -154,9 +158,9 @@ std::vector<StudyColumn> grid_columns();
 // --- Ready-made studies of the paper's evaluation. ---
 
 struct StudySources {
-  std::string scenes;             // the folder of the paper's models; empty or missing: what needs it is left out
-  std::vector<std::string> only;  // names of scenes; empty: all
-  size_t rays = 1000;             // per area
+  std::string scenes = {};             // the folder of the paper's models; empty or missing: what needs it is left out
+  std::vector<std::string> only = {};  // names of scenes; empty: all
+  size_t rays = 1000;                  // per area
   uint64_t seed = 1;
   bool quick = false;  // few rows of each kind: for tests
 };

@@ -41,7 +41,14 @@ function summary(report: Report): HTMLElement {
     const list = element('ul', { class: 'findings' });
     for (const chart of section.charts)
       list.append(
-        element('li', {}, sign(chart), element('a', { href: `#${chart.id}` }, chart.label || chart.title), ' ', chart.finding),
+        element(
+          'li',
+          {},
+          sign(chart),
+          element('a', { href: `#${chart.id}` }, chart.label || chart.title),
+          ' ',
+          chart.finding,
+        ),
       );
     box.append(element('h3', {}, section.title, ' ', element('small', {}, tally)), list);
   }
@@ -53,7 +60,11 @@ function tableOf(chart: Chart): HTMLElement | null {
   if (rows.length === 0) return null;
   const head = element('tr', {}, ...columns.map((column) => element('th', {}, column)));
   const body = rows.map((row) => element('tr', {}, ...row.map((cell) => element('td', {}, cell))));
-  return element('div', { class: 'table' }, element('table', {}, element('thead', {}, head), element('tbody', {}, ...body)));
+  return element(
+    'div',
+    { class: 'table' },
+    element('table', {}, element('thead', {}, head), element('tbody', {}, ...body)),
+  );
 }
 
 function chartNode(chart: Chart, views: PanelView[]): HTMLElement {

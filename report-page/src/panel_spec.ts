@@ -1,6 +1,7 @@
 // From a panel to a Vega-Lite specification. Charts are always drawn for white paper; the page's style sheet recolours
 // text, rules and published marks for dark screens, so that saved pictures and prints need nothing.
 import type { TopLevelSpec } from 'vega-lite';
+import { matrixParts } from './matrix_spec';
 import { shortNumber, type Panel, type Point } from './report';
 
 export const INK = '#212529';
@@ -16,9 +17,9 @@ export interface SpecOptions {
   height?: number;
 }
 
-type Row = Record<string, string | number | null>;
+export type Row = Record<string, string | number | null>;
 
-function rowOf(point: Point, source: string): Row {
+export function rowOf(point: Point, source: string): Row {
   const range =
     (point.count ?? 1) > 1
       ? `mean of ${point.count}, from ${shortNumber(point.low)} to ${shortNumber(point.high)}`
@@ -31,11 +32,11 @@ function rowOf(point: Point, source: string): Row {
     source,
     value: shortNumber(point.y),
     at: point.x === undefined ? '' : shortNumber(point.x),
-    about: [point.label, range].filter(Boolean).join("; ") || "one value",
+    about: [point.label, range].filter(Boolean).join('; ') || 'one value',
   };
 }
 
-function tooltip(panel: Panel): object[] {
+export function tooltip(panel: Panel): object[] {
   const number = panel.kind === 'points' || panel.kind === 'lines';
   return [
     { field: 'series', title: 'series' },
@@ -45,6 +46,18 @@ function tooltip(panel: Panel): object[] {
     { field: 'source', title: 'source' },
     { field: 'about', title: 'about' },
   ];
+}
+
+/** SI prefixes where plain numbers would be long. */
+function axisFormat(values: (number | null | undefined)[]): object {
+  const sizes = values.filter((v): v is number => typeof v === 'number' && v > 0);
+  return Math.max(...sizes) >= 1e5 || Math.min(...sizes) < 1e-2 ? { format: '.3~s' } : {};
+}
+
+/** Ticks at the values themselves, where these are few and the axis is logarithmic. */
+function numberTicks(panel: Panel): object {
+  const places = [...new Set(panel.measured.map((point) => point.x))].filter((x): x is number => x !== undefined);
+  return panel.x.logarithmic && places.length <= 12 ? { values: places } : { tickCount: 8 };
 }
 
 /** Along which screen axis the values lie, and how groups and numbers are spread across the other. */
@@ -59,7 +72,7 @@ function channels(panel: Panel, options: SpecOptions) {
     scale: panel.y.logarithmic ? { type: 'log', nice: false, padding: 8 } : { zero: fromZero, nice: true },
     axis: {
       tickCount: lying ? 6 : 5,
-      ...(panel.y.logarithmic ? { labelOverlap: true } : {}),
+      ...(panel.y.logarithmic ? { labelOverlap: true, ...axisFormat(panel.measured.map((p) => p.y)) } : {}),
       ...(lying ? {} : { titleAngle: 0, titleAlign: 'left', titleAnchor: 'end', titleX: 0, titleY: -14 }),
     },
   };
@@ -69,7 +82,7 @@ function channels(panel: Panel, options: SpecOptions) {
       type: 'quantitative',
       title: panel.x.title,
       scale: panel.x.logarithmic ? { type: 'log', nice: false, padding: 8 } : { zero: false, nice: true },
-      axis: { grid: false, tickCount: 8, labelOverlap: true },
+      axis: { grid: false, labelOverlap: true, ...numberTicks(panel), ...axisFormat(panel.measured.map((p) => p.x)) },
     };
     return { lying, position: { x, y: value } };
   }
@@ -79,7 +92,10 @@ function channels(panel: Panel, options: SpecOptions) {
     type: 'nominal',
     title: panel.x.title || null,
     sort: panel.groups,
-    scale: panel.kind === 'dots' ? { domain: panel.groups, padding: 0.5 } : { domain: panel.groups, paddingInner: 0.25, paddingOuter: 0.12 },
+    scale:
+      panel.kind === 'dots'
+        ? { domain: panel.groups, padding: 0.5 }
+        : { domain: panel.groups, paddingInner: 0.25, paddingOuter: 0.12 },
     axis: {
       labelAngle: 0,
       domain: !lying,
@@ -117,9 +133,20 @@ function publishedLayers(panel: Panel, position: object, lying: boolean, clip: b
     name,
     data: { values: rows },
     mark: onBars
-      ? { type: 'tick', orient: lying ? 'vertical' : 'horizontal', thickness: size, color: colour, clip, bandSize: { band: 1.08 } }
+      ? {
+          type: 'tick',
+          orient: lying ? 'vertical' : 'horizontal',
+          thickness: size,
+          color: colour,
+          clip,
+          bandSize: { band: 1.08 },
+        }
       : { type: 'point', shape: 'diamond', filled: true, size: size * 30, color: colour, opacity: 1, clip },
-    encoding: { ...position, tooltip: tooltip(panel), opacity: { condition: { param: 'picked', value: 1 }, value: 0.1 } },
+    encoding: {
+      ...position,
+      tooltip: tooltip(panel),
+      opacity: { condition: { param: 'picked', value: 1 }, value: 0.1 },
+    },
   });
   return [layer('published_edge', '#ffffff', 6), layer('published', INK, 3)];
 }
@@ -136,69 +163,95 @@ function markOf(panel: Panel, clip: boolean): object {
   }
 }
 
-export function panelSpec(panel: Panel, options: SpecOptions): TopLevelSpec {
+const CONFIG = {
+  font: 'system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif',
+  title: {
+    anchor: 'start',
+    frame: 'group',
+    fontSize: 15,
+    fontWeight: 600,
+    color: INK,
+    subtitleColor: SOFT,
+    subtitleFontSize: 12,
+    offset: 12,
+  },
+  axis: {
+    labelFontSize: 12,
+    titleFontSize: 12,
+    titleFontWeight: 'normal',
+    labelColor: INK,
+    titleColor: SOFT,
+    gridColor: '#e3e6ea',
+    domainColor: '#adb5bd',
+    tickColor: '#adb5bd',
+  },
+  legend: { labelFontSize: 13, labelColor: INK, symbolSize: 130 },
+  view: { stroke: null },
+};
+
+/** What is drawn in the axes of all kinds but the matrix. */
+function chartParts(panel: Panel, options: SpecOptions): { height: number; layer: object[] } {
   const { lying, position } = channels(panel, options);
-  const measured = panel.measured.filter((p) => p.y !== null).map((p) => rowOf(p, 'measured here'));
-  const published = panel.published.filter((p) => p.y !== null).map((p) => rowOf(p, 'published'));
+  const shown = (point: Point) => point.y !== null && (point.y > 0 || !panel.y.logarithmic);
+  const measured = panel.measured.filter(shown).map((point) => rowOf(point, 'measured here'));
+  const published = panel.published.filter(shown).map((point) => rowOf(point, 'published'));
   const names = panel.series.map((series) => series.name);
-  const grouped = panel.groups.length > 0;
-  const zoomed = grouped ? [lying ? 'x' : 'y'] : ['x', 'y'];
+  const zoomed = panel.groups.length > 0 ? [lying ? 'x' : 'y'] : ['x', 'y'];
+  const legend = {
+    title: null,
+    orient: 'top',
+    offset: lying ? 8 : 26,
+    columns: legendColumns(panel, options.width),
+    labelLimit: 400,
+    symbolOpacity: 1,
+    symbolType: 'square',
+  };
+  const marks = {
+    name: 'measured',
+    params: [
+      { name: 'picked', select: { type: 'point', fields: ['series'] }, bind: 'legend' },
+      ...(options.zoom ? [{ name: 'zoom', select: { type: 'interval', encodings: zoomed }, bind: 'scales' }] : []),
+    ],
+    data: { values: measured },
+    mark: markOf(panel, options.zoom),
+    encoding: {
+      ...position,
+      color: {
+        field: 'series',
+        type: 'nominal',
+        sort: names,
+        scale: { domain: names, range: panel.series.map((series) => series.colour) },
+        legend,
+      },
+      opacity: { condition: { param: 'picked', value: panel.kind === 'points' ? 0.8 : 1 }, value: 0.1 },
+      tooltip: tooltip(panel),
+    },
+  };
+  const reference = {
+    name: 'reference',
+    data: { values: [{}] },
+    mark: { type: 'rule', color: SOFT, strokeDash: [4, 3] },
+    encoding: { [lying ? 'x' : 'y']: { datum: panel.reference } },
+  };
+  return {
+    height: height(panel, lying, options),
+    layer: [
+      marks,
+      ...(panel.reference === null ? [] : [reference]),
+      ...publishedLayers(panel, position, lying, options.zoom, published),
+    ],
+  };
+}
+
+export function panelSpec(panel: Panel, options: SpecOptions): TopLevelSpec {
+  const subtitle = panel.published.length > 0 ? { subtitle: PUBLISHED } : {};
   const spec = {
     $schema: 'https://vega.github.io/schema/vega-lite/v6.json',
     width: options.alone ? options.width : 'container',
-    height: height(panel, lying, options),
     autosize: { type: options.alone ? 'pad' : 'fit-x', contains: 'padding' },
-    ...(options.alone ? { title: { text: panel.title, ...(published.length > 0 ? { subtitle: PUBLISHED } : {}) } } : {}),
-    layer: [
-      {
-        name: 'measured',
-        params: [
-          { name: 'picked', select: { type: 'point', fields: ['series'] }, bind: 'legend' },
-          ...(options.zoom ? [{ name: 'zoom', select: { type: 'interval', encodings: zoomed }, bind: 'scales' }] : []),
-        ],
-        data: { values: measured },
-        mark: markOf(panel, options.zoom),
-        encoding: {
-          ...position,
-          color: {
-            field: 'series',
-            type: 'nominal',
-            sort: names,
-            scale: { domain: names, range: panel.series.map((series) => series.colour) },
-            legend: {
-              title: null,
-              orient: 'top',
-              offset: lying ? 8 : 26,
-              columns: legendColumns(panel, options.width),
-              labelLimit: 400,
-              symbolOpacity: 1,
-              symbolType: 'square',
-            },
-          },
-          opacity: { condition: { param: 'picked', value: panel.kind === 'points' ? 0.8 : 1 }, value: 0.1 },
-          tooltip: tooltip(panel),
-        },
-      },
-      ...(panel.reference === null
-        ? []
-        : [
-            {
-              name: 'reference',
-              data: { values: [{}] },
-              mark: { type: 'rule', color: SOFT, strokeDash: [4, 3] },
-              encoding: { [lying ? 'x' : 'y']: { datum: panel.reference } },
-            },
-          ]),
-      ...publishedLayers(panel, position, lying, options.zoom, published),
-    ],
-    config: {
-      font: 'system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif',
-      background: options.alone ? 'white' : null,
-      title: { anchor: 'start', frame: 'group', fontSize: 15, fontWeight: 600, color: INK, subtitleColor: SOFT, subtitleFontSize: 12, offset: 12 },
-      axis: { labelFontSize: 12, titleFontSize: 12, titleFontWeight: 'normal', labelColor: INK, titleColor: SOFT, gridColor: '#e3e6ea', domainColor: '#adb5bd', tickColor: '#adb5bd' },
-      legend: { labelFontSize: 13, labelColor: INK, symbolSize: 130 },
-      view: { stroke: null },
-    },
+    ...(options.alone ? { title: { text: panel.title, ...subtitle } } : {}),
+    ...(panel.kind === 'matrix' ? matrixParts(panel, options) : chartParts(panel, options)),
+    config: { ...CONFIG, background: options.alone ? 'white' : null },
   };
   return spec as unknown as TopLevelSpec;
 }

@@ -52,7 +52,13 @@ function enlarge(panel: Panel): void {
   const dialog = element(
     'dialog',
     { class: 'enlarged', 'aria-label': panel.title },
-    element('div', { class: 'bar' }, element('strong', {}, panel.title), element('span', {}, 'Wheel zooms, drag moves, double click resets.'), close),
+    element(
+      'div',
+      { class: 'bar' },
+      element('strong', {}, panel.title),
+      element('span', {}, 'Wheel zooms, drag moves, double click resets.'),
+      close,
+    ),
     box,
   );
   let view: View | undefined;
@@ -72,9 +78,17 @@ function enlarge(panel: Panel): void {
 function valuesTable(panel: Panel): HTMLElement {
   const published = panel.published.length > 0;
   const spread = panel.measured.some((point) => (point.count ?? 1) > 1);
-  const columns = ['series', panel.groups.length > 0 ? 'group' : panel.x.title, 'value', ...(spread ? ['least', 'greatest', 'count'] : [])];
+  const columns = [
+    'series',
+    panel.groups.length > 0 ? 'group' : panel.x.title,
+    'value',
+    ...(spread ? ['least', 'greatest', 'count'] : []),
+  ];
   const body = element('tbody');
-  const rows = [...panel.measured.map((p) => ({ p, source: 'measured' })), ...panel.published.map((p) => ({ p, source: 'published' }))];
+  const rows = [
+    ...panel.measured.map((p) => ({ p, source: 'measured' })),
+    ...panel.published.map((p) => ({ p, source: 'published' })),
+  ];
   for (const { p, source } of rows) {
     const cells = [p.series, p.group ?? shortNumber(p.x), shortNumber(p.y)];
     if (spread) cells.push(shortNumber(p.low), shortNumber(p.high), String(p.count ?? 1));
@@ -117,7 +131,13 @@ export class PanelView {
       panel.published.length > 0 && element('small', {}, PUBLISHED),
       buttons,
     );
-    this.node = element('figure', { class: 'panel' }, caption, this.box, values);
+    this.node = element(
+      'figure',
+      { class: panel.kind === 'matrix' ? 'panel wide' : 'panel' },
+      caption,
+      this.box,
+      values,
+    );
   }
 
   /** Draws it, again where the width asks for another form. */

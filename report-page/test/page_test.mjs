@@ -6,7 +6,7 @@ import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'nod
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { chromium } from 'playwright-core';
-import { paperResults } from './paper_results.mjs';
+import { areaResults, paperResults } from './paper_results.mjs';
 
 const program = resolve(process.argv[2] ?? '../build/release/bin/raygrain');
 const folder = resolve(process.argv[3] ?? '../build/report-page-test');
@@ -25,10 +25,18 @@ const FLAGS = [
 function makeReport() {
   rmSync(folder, { recursive: true, force: true });
   mkdirSync(folder, { recursive: true });
-  const results = join(folder, 'paper.csv');
-  writeFileSync(results, paperResults(OWN));
+  const results = {
+    'paper.csv': paperResults(OWN),
+    'corrected.csv': paperResults(OWN, 'B', 'C', 'D'),
+    'areas.csv': areaResults(),
+  };
+  for (const [name, text] of Object.entries(results)) writeFileSync(join(folder, name), text);
   const page = join(folder, 'report.html');
-  execFileSync(program, ['report', results, '--out', page], { stdio: ['ignore', 'ignore', 'inherit'] });
+  const template = join(program, '../../share/raygrain/report-page.html');
+  const files = Object.keys(results).map((name) => join(folder, name));
+  execFileSync(program, ['report', ...files, '--out', page, '--template', template], {
+    stdio: ['ignore', 'ignore', 'inherit'],
+  });
   return page;
 }
 
@@ -76,7 +84,8 @@ function charts(tab) {
           width: box?.width ?? 0,
           room: panel.getBoundingClientRect().width,
           height: box?.height ?? 0,
-          marks: panel.querySelectorAll('.measured_marks path, .layer_0_marks path, .measured_layer_1_marks path').length,
+          marks: panel.querySelectorAll('.measured_marks path, .measured_layer_1_marks path').length,
+          numbers: panel.querySelectorAll('.numbers_marks text').length,
           published: panel.querySelectorAll('.published_marks path').length,
           legend: [...panel.querySelectorAll('.role-legend-label text')].map((text) => text.textContent),
         };
@@ -87,8 +96,10 @@ function charts(tab) {
 
 function checkCharts(all) {
   const figures = all.map((chart) => chart.id);
-  for (const number of [14, 16, 17, 18, 19, 20, 22]) assert.ok(figures.includes(`paper-figure-${number}`), `figure ${number}`);
+  for (const number of [14, 16, 17, 18, 19, 20, 22])
+    assert.ok(figures.includes(`paper-figure-${number}`), `figure ${number}`);
   assert.ok(figures.includes('table-1'), 'table 1');
+  assert.ok(figures.includes('areas-list-and-octrees-over-many-areas-city'), 'lines');
   for (const chart of all) {
     assert.match(chart.finding, /confirms|contradicts|beyond the paper|not measured/, chart.id);
     assert.match(chart.finding, /\.$/, `${chart.id} says something`);
@@ -99,10 +110,16 @@ function checkCharts(all) {
       assert.ok(panel.marks > 0 || panel.published > 0, `${name} has marks`);
     }
   }
+  const scenes = all.find((chart) => chart.id === 'corrected-by-scene').panels[0];
+  assert.equal(scenes.numbers, 8 * 8, 'eight recipes in eight scenes as numbers');
   const panels = (id) => all.find((chart) => chart.id === `paper-figure-${id}`).panels;
   for (const id of [16, 17, 18, 20, 22])
     for (const panel of panels(id)) assert.ok(panel.legend.includes(OWN), `figure ${id} shows ${OWN}: ${panel.title}`);
-  assert.equal(panels(16).find((panel) => panel.title.startsWith('As in the paper')).published, 16, 'published marks of figure 16');
+  assert.equal(
+    panels(16).find((panel) => panel.title.startsWith('As in the paper')).published,
+    16,
+    'published marks of figure 16',
+  );
   assert.match(panels(16)[0].title, /users pay/, 'what users pay comes first');
 }
 
@@ -119,7 +136,10 @@ async function checkHover(tab) {
 }
 
 async function saved(tab, button) {
-  const [file] = await Promise.all([tab.waitForEvent('download'), tab.locator('#paper-figure-16 .panel').nth(1).getByRole('button', { name: button }).click()]);
+  const [file] = await Promise.all([
+    tab.waitForEvent('download'),
+    tab.locator('#paper-figure-16 .panel').nth(1).getByRole('button', { name: button }).click(),
+  ]);
   return { name: file.suggestedFilename(), bytes: readFileSync(await file.path()) };
 }
 
@@ -132,8 +152,14 @@ async function checkDownloads(tab) {
   writeFileSync(join(folder, png.name), png.bytes);
   const csv = (await saved(tab, 'CSV')).bytes.toString().split('\r\n');
   assert.match(csv[0], /^source,series,group,x,value/);
-  assert.ok(csv.some((line) => line.startsWith('measured,PAH+SPFH,plane parallel,,')), 'measured values');
-  assert.ok(csv.some((line) => line.startsWith(`measured,${OWN},`)), 'own values');
+  assert.ok(
+    csv.some((line) => line.startsWith('measured,PAH+SPFH,plane parallel,,')),
+    'measured values',
+  );
+  assert.ok(
+    csv.some((line) => line.startsWith(`measured,${OWN},`)),
+    'own values',
+  );
 }
 
 /** The enlarged chart: the wheel changes its scale, Esc closes it. */
@@ -166,7 +192,11 @@ async function checkValues(tab) {
 /** How light the page is behind its text, and the letters of its charts. */
 function lightness(tab) {
   return tab.evaluate(() => {
-    const sum = (colour) => colour.match(/\d+/g).slice(0, 3).reduce((total, part) => total + Number(part), 0) / 765;
+    const sum = (colour) =>
+      colour
+        .match(/\d+/g)
+        .slice(0, 3)
+        .reduce((total, part) => total + Number(part), 0) / 765;
     return {
       paper: sum(getComputedStyle(document.querySelector('article')).backgroundColor),
       text: sum(getComputedStyle(document.querySelector('.chart svg .role-axis-label text')).fill),
@@ -215,4 +245,6 @@ await visit(report, { viewport: { width: 390, height: 844 }, hasTouch: true, isM
   assert.ok(overflow <= 1, `nothing hangs over the edge of a small screen (${overflow} pixels)`);
   await tab.locator('#paper-figure-16').screenshot({ path: join(folder, 'phone.png') });
 });
-console.log(`report page: all charts drawn, hover, zoom, downloads, dark, print and phone are good; pictures in ${folder}`);
+console.log(
+  `report page: all charts drawn, hover, zoom, downloads, dark, print and phone are good; pictures in ${folder}`,
+);

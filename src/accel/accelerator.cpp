@@ -1,6 +1,7 @@
 #include "raygrain/accelerator.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <numeric>
@@ -11,6 +12,7 @@
 #include "raygrain/rays.h"
 
 #include "accel/build_trees.h"
+#include "accel/foreign.h"
 #include "accel/search.h"
 #include "base/parallel.h"
 #include "base/timer.h"
@@ -25,6 +27,7 @@ struct Accelerator::Parts {
   AreaTable areas;
   Traversal traversal = Traversal::kWide;
   std::vector<Coverage> coverages = {};  // parallel to `locals`, or empty
+  ForeignFilter foreign = ForeignFilter(areas.geometries);
 
   /// Rays along an area that its coverage answers, whatever region they are in.
   std::optional<Hit> nearest_covered(const Ray& ray) const;
@@ -33,8 +36,11 @@ struct Accelerator::Parts {
 
   Hit nearest(const Ray& ray, AcceleratorCounters* counters) const;
   bool any(const Ray& ray, AcceleratorCounters* counters) const;
-  /// What no area answers goes to the wide global tree as an array.
-  bool has_only_wide_global() const { return locals.empty() && global.wide().has_value(); }
+
+  /// Rays that are no area's go to the global tree together, the others one by one.
+  template <class Answer, class One, class Many>
+  void answer_array(std::span<const Ray> rays, std::span<Answer> answers, unsigned threads, const One& one,
+                    const Many& many) const;
 };
 
 namespace {
@@ -252,29 +258,70 @@ bool Accelerator::Parts::any(const Ray& ray, AcceleratorCounters* counters) cons
 }
 
 Hit Accelerator::intersect(const Ray& ray, AcceleratorCounters* counters) const {
+  if (counters == nullptr && parts_->foreign.is_foreign(ray)) return parts_->global.intersect(ray, {}, {}, nullptr);
   return parts_->nearest(ray, counters);
 }
 
 bool Accelerator::occluded(const Ray& ray, AcceleratorCounters* counters) const {
+  if (counters == nullptr && parts_->foreign.is_foreign(ray)) return parts_->global.occluded(ray, {}, nullptr);
   return parts_->any(ray, counters);
+}
+
+template <class Answer, class One, class Many>
+void Accelerator::Parts::answer_array(std::span<const Ray> rays, std::span<Answer> answers, unsigned threads,
+                                      const One& one, const Many& many) const {
+  constexpr size_t kChunk = 1024;
+  parallel_for(rays.size(), kChunk, threads, [&](size_t begin, size_t end) {
+    std::array<uint32_t, kChunk> numbers;
+    size_t foreigners = 0;
+    for (size_t i = begin; i < end; ++i) {
+      numbers[foreigners] = static_cast<uint32_t>(i - begin);
+      foreigners += foreign.is_foreign(rays[i]) ? 1 : 0;
+    }
+    const std::span<const Ray> part = rays.subspan(begin, end - begin);
+    const std::span<Answer> room = answers.subspan(begin, end - begin);
+    if (foreigners == part.size()) return many(part, room);
+    std::vector<Ray> gathered;
+    gathered.reserve(foreigners);
+    size_t next = 0;
+    for (size_t i = 0; i < part.size(); ++i) {
+      if (next < foreigners && numbers[next] == i) {
+        gathered.push_back(part[i]);
+        ++next;
+      } else {
+        room[i] = one(part[i]);
+      }
+    }
+    std::vector<Answer> found(foreigners);
+    many(gathered, found);
+    for (size_t i = 0; i < foreigners; ++i) room[numbers[i]] = found[i];
+  });
 }
 
 void Accelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits, unsigned threads,
                             AcceleratorCounters* counters) const {
   check_sizes(rays.size(), hits.size());
-  if (counters == nullptr && parts_->has_only_wide_global())
-    return parts_->global.wide()->intersect(rays, hits, threads);
-  for_chunks(rays.size(), threads, counters,
-             [&](size_t i, AcceleratorCounters* count) { hits[i] = parts_->nearest(rays[i], count); });
+  const std::optional<WideBvh>& global = parts_->global.wide();
+  if (counters != nullptr || !global)
+    return for_chunks(rays.size(), threads, counters,
+                      [&](size_t i, AcceleratorCounters* count) { hits[i] = parts_->nearest(rays[i], count); });
+  if (parts_->locals.empty()) return global->intersect(rays, hits, threads);
+  parts_->answer_array(
+      rays, hits, threads, [&](const Ray& ray) { return parts_->nearest(ray, nullptr); },
+      [&](std::span<const Ray> some, std::span<Hit> found) { global->intersect(some, found); });
 }
 
 void Accelerator::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, unsigned threads,
                            AcceleratorCounters* counters) const {
   check_sizes(rays.size(), flags.size());
-  if (counters == nullptr && parts_->has_only_wide_global())
-    return parts_->global.wide()->occluded(rays, flags, threads);
-  for_chunks(rays.size(), threads, counters,
-             [&](size_t i, AcceleratorCounters* count) { flags[i] = parts_->any(rays[i], count) ? 1 : 0; });
+  const std::optional<WideBvh>& global = parts_->global.wide();
+  if (counters != nullptr || !global)
+    return for_chunks(rays.size(), threads, counters,
+                      [&](size_t i, AcceleratorCounters* count) { flags[i] = parts_->any(rays[i], count) ? 1 : 0; });
+  if (parts_->locals.empty()) return global->occluded(rays, flags, threads);
+  parts_->answer_array(
+      rays, flags, threads, [&](const Ray& ray) { return static_cast<uint8_t>(parts_->any(ray, nullptr)); },
+      [&](std::span<const Ray> some, std::span<uint8_t> found) { global->occluded(some, found); });
 }
 
 Explanation Accelerator::explain(const AcceleratorCounters& counters, size_t rays) const {

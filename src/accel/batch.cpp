@@ -1,5 +1,5 @@
 // Rays that share a direction or a point: to the coverage of the areas that have it, what is left ray by ray.
-#include <numeric>
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -34,6 +34,18 @@ class Waiting {
     started_ = true;
   }
 
+  /// The same with several coverages about one eye: each gets its own. ask(coverage, numbers, rest).
+  template <class Ask>
+  void divide(const std::vector<const Coverage*>& coverages, std::span<const Vec3> points, bool are_directions,
+              unsigned threads, const Ask& ask) {
+    started_ = true;
+    const auto lists = Coverage::divide(coverages, points, are_directions, numbers_, threads);
+    const size_t unserved = numbers_.size();
+    for (size_t i = 0; i < lists.size(); ++i)
+      if (!lists[i].empty()) ask(*coverages[i], std::span<const uint32_t>(lists[i]), numbers_);
+    if (numbers_.size() > unserved) std::ranges::sort(numbers_);
+  }
+
   /// The last resort: rays of any kind. trace(rays, answers) answers an array.
   template <class Answer, class MakeRay, class Trace>
   void trace_rest(std::span<Answer> answers, unsigned threads, const MakeRay& make_ray, const Trace& trace) const {
@@ -56,6 +68,13 @@ class Waiting {
   bool started_ = false;
   std::vector<uint32_t> numbers_;
 };
+
+std::vector<const Coverage*> about(std::span<const Coverage> coverages, Vec3 eye) {
+  std::vector<const Coverage*> found;
+  for (const Coverage& coverage : coverages)
+    if (coverage.has_eye(eye) && found.size() < 254) found.push_back(&coverage);
+  return found;
+}
 
 }  // namespace
 
@@ -101,13 +120,15 @@ void Accelerator::occluded_towards(std::span<const Vec3> origins, Vec3 point, st
                                    unsigned threads) const {
   check_sizes(origins.size(), flags.size());
   Waiting waiting(origins.size());
-  for (const Coverage& coverage : coverages()) {
-    if (waiting.is_empty()) return;
-    if (coverage.has_eye(point))
-      waiting.offer([&](std::span<const uint32_t> numbers, std::vector<uint32_t>& rest) {
-        coverage.occluded_towards(origins, point, flags, rest, numbers, threads);
-      });
-  }
+  const std::vector<const Coverage*> coverages = about(this->coverages(), point);
+  const auto ask = [&](const Coverage& coverage, std::span<const uint32_t> numbers, std::vector<uint32_t>& rest) {
+    coverage.occluded_towards(origins, point, flags, rest, numbers, threads);
+  };
+  if (coverages.size() > 1)
+    waiting.divide(coverages, origins, false, threads, ask);
+  else if (coverages.size() == 1)
+    waiting.offer(
+        [&](std::span<const uint32_t> numbers, std::vector<uint32_t>& rest) { ask(*coverages[0], numbers, rest); });
   waiting.trace_rest(
       flags, threads,
       [&](size_t i) {
@@ -120,13 +141,15 @@ void Accelerator::intersect_from(Vec3 eye, std::span<const Vec3> directions, std
                                  unsigned threads) const {
   check_sizes(directions.size(), hits.size());
   Waiting waiting(directions.size());
-  for (const Coverage& coverage : coverages()) {
-    if (waiting.is_empty()) return;
-    if (coverage.has_eye(eye))
-      waiting.offer([&](std::span<const uint32_t> numbers, std::vector<uint32_t>& rest) {
-        coverage.intersect_from(eye, directions, hits, rest, numbers, threads);
-      });
-  }
+  const std::vector<const Coverage*> coverages = about(this->coverages(), eye);
+  const auto ask = [&](const Coverage& coverage, std::span<const uint32_t> numbers, std::vector<uint32_t>& rest) {
+    coverage.intersect_from(eye, directions, hits, rest, numbers, threads);
+  };
+  if (coverages.size() > 1)
+    waiting.divide(coverages, directions, true, threads, ask);
+  else if (coverages.size() == 1)
+    waiting.offer(
+        [&](std::span<const uint32_t> numbers, std::vector<uint32_t>& rest) { ask(*coverages[0], numbers, rest); });
   waiting.trace_rest(
       hits, threads,
       [&](size_t i) {

@@ -22,7 +22,7 @@ struct Global {
 Global build_global(const TriangleMesh& mesh, const AcceleratorOptions& options, std::span<const Ray> samples,
                     JointProgress& progress) {
   Recipe recipe = options.global;
-  if (options.quality) recipe.builder = builder_name(*options.quality);
+  if (options.quality) set_quality(recipe, *options.quality);
   const double built = options.reinsert ? kBuilt / 2 : kBuilt;
   Bvh tree = build_global_tree(mesh, recipe, options.registry, nullptr, samples,
                                {options.threads, progress.part(0, 0, built)});

@@ -24,10 +24,10 @@ LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, 
   std::vector<Bounds> bounds;
   std::vector<Vec3> centroids;
   bounds.reserve(members.size());
-  centroids.reserve(members.size());
-  for (const uint32_t i : members) {
-    bounds.push_back(triangle_bounds(mesh, i));
-    centroids.push_back(triangle_centroid(mesh, i));
+  for (const uint32_t i : members) bounds.push_back(triangle_bounds(mesh, i));
+  if (needs_centroids(recipe, registry)) {
+    centroids.reserve(members.size());
+    for (const uint32_t i : members) centroids.push_back(triangle_centroid(mesh, i));
   }
 
   const HeuristicInput input{&area, samples, [&](uint32_t primitive, const Bounds& box) {
@@ -49,7 +49,9 @@ Bvh build_global_tree(const TriangleMesh& mesh, const Recipe& recipe, const Regi
   const HeuristicInput input{nullptr, samples, [&mesh](uint32_t triangle, const Bounds& box) {
                                return clip_triangle_bounds(mesh, triangle, box);
                              }};
-  return build_tree(recipe, registry, input, triangle_bounds(mesh), triangle_centroids(mesh), log, run);
+  const std::vector<Vec3> centroids =
+      needs_centroids(recipe, registry) ? triangle_centroids(mesh) : std::vector<Vec3>{};
+  return build_tree(recipe, registry, input, triangle_bounds(mesh), centroids, log, run);
 }
 
 }  // namespace raygrain

@@ -48,6 +48,7 @@ void validate(const BuildOptions& options) {
   require(not_negative(options.costs.triangle) && std::isfinite(options.costs.triangle), "costs.triangle",
           "finite, 0 or more");
   require(options.leaf_size >= 1, "leaf_size", "1 or more");
+  require(options.rare_share >= 0 && std::isfinite(options.rare_share), "rare_share", "0 or more");
   require(options.spatial.overlap >= 0 && options.spatial.overlap <= 1, "spatial.overlap", "in [0, 1]");
   require(options.spatial.budget >= 0 && options.spatial.budget <= 16, "spatial.budget", "in [0, 16]");
 }

@@ -45,7 +45,7 @@ bool ReferenceBuilder::serves(const Input& input, const BuildStrategy& strategy)
   return input.bounds.empty() || is_finite(extent(all));
 }
 
-void ReferenceBuilder::fill(std::vector<Reference>& references, PackedBox& box, PackedBox& keys) const {
+void ReferenceBuilder::fill(std::span<Reference> references, PackedBox& box, PackedBox& keys) const {
   const size_t count = input_.bounds.size();
   std::vector<std::array<PackedBox, 2>> boxes((count + kChunk - 1) / kChunk);
   parallel_for(count, kChunk, options_.threads, [&](size_t begin, size_t end) {
@@ -53,7 +53,7 @@ void ReferenceBuilder::fill(std::vector<Reference>& references, PackedBox& box, 
     for (size_t i = begin; i < end; ++i) {
       references[i] = Reference::of(input_.bounds[i], input_.centroids[i], static_cast<uint32_t>(i));
       all.extend(references[i].box);
-      all_keys.extend(PackedBox::of_point(references[i].key));
+      all_keys.extend(references[i].key_box());
     }
     boxes[begin / kChunk] = {all, all_keys};
   });
@@ -71,11 +71,11 @@ Bvh ReferenceBuilder::build(BuildLog* log) {
   const auto extra =
       static_cast<size_t>(spatial_ ? static_cast<double>(options_.spatial.budget) * static_cast<double>(count) : 0);
   const size_t room = std::min(count + extra, size_t{1} << 31);
-  first_.resize(room);
-  second_.resize(room);
+  first_ = Buffer<Reference>(room);
+  second_ = Buffer<Reference>(room);
   PackedBox box;
   OpenRange root;
-  fill(first_, box, root.keys);
+  fill(first_.elements(), box, root.keys);
   root.context = root_context(box.unpacked(), static_cast<uint32_t>(count), options_.seed);
   root.room = room;
   strategy_.set_total(root.context);
@@ -90,7 +90,7 @@ Bvh ReferenceBuilder::build(BuildLog* log) {
   });
   laps.skip();
   if (log) add_scaled(log->times, pieces, timer.seconds());
-  if (log) log->peak_bytes = (first_.size() + second_.size()) * sizeof(Reference);
+  if (log) log->peak_bytes = first_.bytes() + second_.bytes();
   Bvh bvh = assemble(pieces, log);
   laps.lap(&BuildTimes::nodes);
   return bvh;

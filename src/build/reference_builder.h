@@ -7,6 +7,7 @@
 
 #include <vector>
 
+#include "base/buffer.h"
 #include "build/laps.h"
 #include "build/monitor.h"
 #include "build/slices.h"
@@ -56,18 +57,18 @@ class ReferenceBuilder {
     int64_t piece = -1;
   };
 
-  void fill(std::vector<Reference>& references, PackedBox& box, PackedBox& keys) const;
+  void fill(std::span<Reference> references, PackedBox& box, PackedBox& keys) const;
   void split_top(const OpenRange& root, Laps& laps);
   Piece build_piece(const OpenRange& root) const;
   bool split(const OpenRange& node, Scratch& scratch, unsigned threads, Children& children, NodeLog& note,
              Laps& laps) const;
+  bool is_rare(const OpenRange& node) const;
   AxisOrder admitted_axes(const NodeContext& node) const;
   Cut find_cut(const OpenRange& node, const AxisOrder& order, Scratch& scratch, unsigned threads) const;
   Cut find_space_cut(const OpenRange& node, const AxisOrder& order, const Cut& best, Scratch& scratch,
                      unsigned threads) const;
   Cut find_last_cut(const OpenRange& node, Scratch& scratch, unsigned threads) const;
   Cut halve(const OpenRange& node) const;
-  bool is_leaf_cheaper(const OpenRange& node, const Cut& cut) const;
   bool part_by_space(const OpenRange& node, Cut& cut, double limit, Scratch& scratch, unsigned threads,
                      Children& children) const;
   bool price_sides(const OpenRange& node, Cut& cut, std::span<const SpaceSides> chunks) const;
@@ -75,7 +76,7 @@ class ReferenceBuilder {
   void part_by_keys(const OpenRange& node, const Cut& cut, Scratch& scratch, unsigned threads,
                     Children& children) const;
   Children open_children(const OpenRange& node, const Cut& cut) const;
-  std::span<Reference> buffer(bool second) const { return second ? std::span(second_) : std::span(first_); }
+  std::span<Reference> buffer(bool second) const { return second ? second_.elements() : first_.elements(); }
   std::span<const Reference> references_of(const OpenRange& node) const {
     return std::span<const Reference>(buffer(node.in_second)).subspan(node.begin, node.context.count);
   }
@@ -85,7 +86,7 @@ class ReferenceBuilder {
   const BuildOptions& options_;
   const bool spatial_;
   ActiveStrategy strategy_;
-  mutable std::vector<Reference> first_, second_;  // split writes disjoint ranges from several threads
+  Buffer<Reference> first_, second_;  // split writes disjoint ranges from several threads
   std::vector<TopNode> top_;
   std::vector<OpenRange> subtrees_;
   float root_measure_ = 0;

@@ -8,7 +8,9 @@ namespace raygrain::builder {
 inline constexpr size_t kChunk = 16384;  // references that one thread takes at a time
 
 struct ReferenceBuilder::Scratch {
-  std::vector<Slices> slices;
+  CutCandidates candidates;
+  std::vector<Slices> slices;  // by chunk
+  Slices all_slices;           // of all chunks, where there are several
   std::vector<SpaceSlices> space;
   std::vector<SpaceSides> sides;
   std::vector<std::array<PackedBox, 2>> keys;  // of left and right side

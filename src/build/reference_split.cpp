@@ -26,7 +26,7 @@ size_t chunks_of(const NodeContext& node) {
 constexpr double kHope = 1.1;
 
 uint32_t slices_for(uint32_t count, uint32_t most) {
-  return std::min(most, 4 + count / 2);
+  return std::min(most, 4 + count / 16);
 }
 
 }  // namespace
@@ -35,7 +35,8 @@ uint32_t slices_for(uint32_t count, uint32_t most) {
 bool ReferenceBuilder::split(const OpenRange& node, Scratch& scratch, unsigned threads, Children& children,
                              NodeLog& note, Laps& laps) const {
   const NodeContext& context = node.context;
-  const bool is_leaf = context.count < 2 || context.level >= kMaxTreeLevels || strategy_.stops(context, node.measure);
+  const bool is_leaf =
+      context.count < 2 || is_rare(node) || context.level >= kMaxTreeLevels || strategy_.stops(context, node.measure);
   laps.lap(&BuildTimes::stop);
   if (is_leaf) return false;
   const AxisOrder order = admitted_axes(context);
@@ -48,7 +49,10 @@ bool ReferenceBuilder::split(const OpenRange& node, Scratch& scratch, unsigned t
   if (!cut && !space && options_.split_inseparable) cut = find_last_cut(node, scratch, threads);
   const Cut& chosen = space ? space : cut;
   laps.lap(&BuildTimes::candidates);
-  if (!chosen || (options_.merge_leaves && is_leaf_cheaper(node, chosen))) return false;
+  if (!chosen ||
+      (options_.merge_leaves && is_leaf_cheaper(options_, context.count, node.measure,
+                                                static_cast<double>(node.measure) * context.count, chosen.cost)))
+    return false;
   if (!space) part_by_keys(node, chosen, scratch, threads, children);
   note.axis = static_cast<int8_t>(chosen.axis);
   note.quality = chosen.quality;
@@ -59,6 +63,13 @@ bool ReferenceBuilder::split(const OpenRange& node, Scratch& scratch, unsigned t
           : kInf;
   laps.lap(&BuildTimes::partition);
   return true;
+}
+
+/// So few primitives, met by so few rays, that no split can gain much.
+bool ReferenceBuilder::is_rare(const OpenRange& node) const {
+  return node.context.count <= options_.rare_leaf_size &&
+         static_cast<double>(node.measure) * static_cast<double>(input_.bounds.size()) <
+             static_cast<double>(options_.rare_share) * static_cast<double>(root_measure_);
 }
 
 AxisOrder ReferenceBuilder::admitted_axes(const NodeContext& node) const {
@@ -73,13 +84,21 @@ AxisOrder ReferenceBuilder::admitted_axes(const NodeContext& node) const {
 /// The best plane between keys.
 Cut ReferenceBuilder::find_cut(const OpenRange& node, const AxisOrder& order, Scratch& scratch,
                                unsigned threads) const {
+  if (node.context.count <= kSmallNode)
+    return best_cut_of_small(references_of(node), strategy_, node.context, order, scratch.candidates);
   const SliceGrid grid(node.keys, slices_for(node.context.count, options_.parameters.bins));
   for_chunks(references_of(node), threads, [&](size_t chunk, std::span<const Reference> references) {
     scratch.slices[chunk].clear(grid.slices);
-    scratch.slices[chunk].add(grid, references);
+    if (order.count == 1)
+      scratch.slices[chunk].add_along(order.choices[0].axis, grid, references);
+    else
+      scratch.slices[chunk].add(grid, references);
   });
-  for (size_t i = 1; i < chunks_of(node.context); ++i) scratch.slices[0].merge(scratch.slices[i]);
-  return scratch.slices[0].best_cut(strategy_, node.context, order, grid);
+  const size_t chunks = chunks_of(node.context);
+  if (chunks == 1) return scratch.slices[0].best_cut(strategy_, node.context, order, grid, scratch.candidates);
+  scratch.all_slices = scratch.slices[0];
+  for (size_t i = 1; i < chunks; ++i) scratch.all_slices.merge(scratch.slices[i]);
+  return scratch.all_slices.best_cut(strategy_, node.context, order, grid, scratch.candidates);
 }
 
 /// A plane that cuts primitives and costs less than `best`, where that leaves sides that overlap.
@@ -131,14 +150,6 @@ Cut ReferenceBuilder::halve(const OpenRange& node) const {
   return cut;
 }
 
-/// Compares what rays that meet the node pay at it as a leaf, and as an inner node over two leaves.
-bool ReferenceBuilder::is_leaf_cheaper(const OpenRange& node, const Cut& cut) const {
-  if (node.context.count > options_.leaf_size) return false;
-  const double triangle = static_cast<double>(options_.costs.triangle), measure = static_cast<double>(node.measure);
-  return triangle * measure * node.context.count <=
-         static_cast<double>(options_.costs.inner) * measure + triangle * cut.cost;
-}
-
 ReferenceBuilder::Children ReferenceBuilder::open_children(const OpenRange& node, const Cut& cut) const {
   const NodeContext& parent = node.context;
   Children children;
@@ -176,7 +187,7 @@ bool ReferenceBuilder::part_by_space(const OpenRange& node, Cut& cut, double lim
     cut.right_count += static_cast<uint32_t>(sides.right.size());
     const auto extend = [&](size_t side, const Reference& reference) {
       boxes[side].extend(reference.box);
-      keys[side].extend(PackedBox::of_point(reference.key));
+      keys[side].extend(reference.key_box());
     };
     for (const Reference& reference : sides.left) extend(0, reference);
     for (const Reference& reference : sides.right) extend(1, reference);
@@ -237,17 +248,16 @@ void ReferenceBuilder::part_by_keys(const OpenRange& node, const Cut& cut, Scrat
     children.left.keys = children.right.keys = node.keys;
     return;
   }
-  const int axis = cut.axis;
+  const auto axis = static_cast<size_t>(cut.axis);
   const auto is_left = [&](const Reference& reference) {
-    return (reference.key[axis] - cut.lo) * cut.scale < cut.limit;
+    return (reference.key.at[axis] - cut.lo) * cut.scale < cut.limit;
   };
-  scratch.left_counts[0] = 0;
-  if (all.size() > kChunk)
-    for_chunks(all, threads, [&](size_t chunk, std::span<const Reference> references) {
-      scratch.left_counts[chunk] = static_cast<size_t>(std::count_if(references.begin(), references.end(), is_left));
-    });
+  const size_t chunks = chunks_of(node.context);
+  if (chunks > 1)  // the cut is the last that slices were counted for
+    for (size_t i = 0; i < chunks; ++i)
+      scratch.left_counts[i] = scratch.slices[i].count_below(cut.axis, static_cast<uint32_t>(cut.limit));
   size_t lefts = 0;
-  for (size_t i = 0; i < chunks_of(node.context); ++i) lefts += std::exchange(scratch.left_counts[i], lefts);
+  for (size_t i = 0; i < chunks; ++i) lefts += std::exchange(scratch.left_counts[i], lefts);
   for_chunks(all, threads, [&](size_t chunk, std::span<const Reference> references) {
     std::array<size_t, 2> at{children.left.begin + scratch.left_counts[chunk],
                              children.right.begin + chunk * kChunk - scratch.left_counts[chunk]};
@@ -255,11 +265,11 @@ void ReferenceBuilder::part_by_keys(const OpenRange& node, const Cut& cut, Scrat
     for (const Reference& reference : references) {
       const size_t side = is_left(reference) ? 0 : 1;
       target[at[side]++] = reference;
-      keys[side].extend(PackedBox::of_point(reference.key));
+      keys[side].extend(reference.key_box());
     }
     scratch.keys[chunk] = keys;
   });
-  for (size_t i = 0; i < chunks_of(node.context); ++i) {
+  for (size_t i = 0; i < chunks; ++i) {
     children.left.keys.extend(scratch.keys[i][0]);
     children.right.keys.extend(scratch.keys[i][1]);
   }

@@ -1,42 +1,99 @@
 #include "build/slices.h"
 
 #include <limits>
+#include <numeric>
+
+#include "base/check.h"
 
 namespace raygrain::builder {
 
+namespace {
+constexpr float kLess = 1 - 0x1p-20f;  // whatever is rounded, the topmost key stays below the end of the last slice
+}
+
 SliceGrid::SliceGrid(const PackedBox& keys, uint32_t count) : slices(count) {
-  lo = keys.lower;
-  lo[3] = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const float candidate = static_cast<float>(count) / keys.length(axis);
+    lo.at[axis] = keys.lo(axis);
+    const float candidate = static_cast<float>(count) * kLess / keys.length(axis);
     // Not for lengths of 0 or so tiny that the quotient overflows.
-    scale[axis] = candidate <= std::numeric_limits<float>::max() ? candidate : 0;
+    scale.at[axis] = candidate <= std::numeric_limits<float>::max() ? candidate : 0;
   }
+}
+
+void CutCandidates::clear() {
+  candidates_.clear();
+  sides_.clear();
+}
+
+Cut CutCandidates::cheapest(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order) {
+  Cut best;
+  if (candidates_.empty()) return best;
+  measures_.resize(sides_.size());
+  strategy.measure(sides_, measures_, node);
+  size_t winner = candidates_.size();
+  uint32_t larger_side = 0;
+  for (size_t i = 0; i < candidates_.size(); ++i) {
+    const uint32_t left = candidates_[i].left_count, right = node.count - left;
+    const double cost =
+        static_cast<double>(measures_[2 * i]) * left + static_cast<double>(measures_[2 * i + 1]) * right;
+    if (cost > best.cost) continue;
+    const uint32_t larger = std::max(left, right);
+    if (cost == best.cost && larger >= larger_side) continue;
+    winner = i;
+    best.cost = cost;
+    larger_side = larger;
+  }
+  if (winner == candidates_.size()) return best;
+  const Candidate& candidate = candidates_[winner];
+  const AxisChoice& axis = order.choices[candidate.choice];
+  best.kind = Cut::Kind::kKeys;
+  best.axis = axis.axis;
+  best.quality = axis.quality;
+  best.limit = candidate.limit;
+  best.left = sides_[2 * winner];
+  best.right = sides_[2 * winner + 1];
+  best.left_count = candidate.left_count;
+  best.right_count = node.count - candidate.left_count;
+  best.left_measure = measures_[2 * winner];
+  best.right_measure = measures_[2 * winner + 1];
+  return best;
 }
 
 void Slices::clear(uint32_t slices) {
   slices_ = slices;
-  boxes_.assign(3 * slices, PackedBox{});
-  counts_.assign(3 * slices, 0);
+  boxes_.assign(size_t{3} * slices, PackedBox{});
+  counts_.assign(size_t{3} * slices, 0);
 }
 
 void Slices::add(const SliceGrid& grid, std::span<const Reference> references) {
-  const float top = static_cast<float>(slices_ - 1);
-  const FourFloats last{top, top, top, top};
+  const SliceGrid at = grid;
   PackedBox* const boxes = boxes_.data();
   uint32_t* const counts = counts_.data();
   const size_t stride = slices_;
   for (const Reference& reference : references) {
-    const FourInts slice = truncated(lesser((reference.key - grid.lo) * grid.scale, last));
-    const PackedBox box = reference.box;
-    const size_t x = static_cast<size_t>(slice[0]), y = stride + static_cast<size_t>(slice[1]),
-                 z = 2 * stride + static_cast<size_t>(slice[2]);
-    boxes[x].extend(box);
-    boxes[y].extend(box);
-    boxes[z].extend(box);
+    const auto slice = [&](int axis) {
+      const float place = (reference.key.at[axis] - at.lo.at[axis]) * at.scale.at[axis];
+      return static_cast<size_t>(static_cast<uint32_t>(static_cast<int32_t>(place)));
+    };
+    const size_t x = slice(0), y = stride + slice(1), z = 2 * stride + slice(2);
+    boxes[x].extend(reference.box);
+    boxes[y].extend(reference.box);
+    boxes[z].extend(reference.box);
     ++counts[x];
     ++counts[y];
     ++counts[z];
+  }
+}
+
+void Slices::add_along(int axis, const SliceGrid& grid, std::span<const Reference> references) {
+  const float lo = grid.lo.at[axis], scale = grid.scale.at[axis];
+  PackedBox* const boxes = boxes_.data() + static_cast<size_t>(axis) * slices_;
+  uint32_t* const counts = counts_.data() + static_cast<size_t>(axis) * slices_;
+  for (const Reference& reference : references) {
+    const auto slice =
+        static_cast<size_t>(static_cast<uint32_t>(static_cast<int32_t>((reference.key.at[axis] - lo) * scale)));
+    boxes[slice].extend(reference.box);
+    ++counts[slice];
   }
 }
 
@@ -47,12 +104,17 @@ void Slices::merge(const Slices& other) {
   }
 }
 
+size_t Slices::count_below(int axis, uint32_t end) const {
+  const auto first = counts_.begin() + static_cast<std::ptrdiff_t>(static_cast<size_t>(axis) * slices_);
+  return std::accumulate(first, first + end, size_t{0});
+}
+
 /// Adds a candidate for each plane above a filled slice, but for the last filled one. First the left sides upwards,
 /// then the right sides downwards.
-void Slices::sweep(const AxisChoice& axis, uint32_t choice, uint32_t total) {
+void Slices::sweep(const AxisChoice& axis, uint32_t choice, uint32_t total, CutCandidates& candidates) const {
   const PackedBox* const boxes = boxes_.data() + static_cast<size_t>(axis.axis) * slices_;
   const uint32_t* const counts = counts_.data() + static_cast<size_t>(axis.axis) * slices_;
-  const size_t first = candidates_.size();
+  const size_t first = candidates.size();
   PackedBox side;
   uint32_t left_count = 0, slice = 0;
   for (;; ++slice) {
@@ -60,56 +122,61 @@ void Slices::sweep(const AxisChoice& axis, uint32_t choice, uint32_t total) {
     side.extend(boxes[slice]);
     left_count += counts[slice];
     if (left_count == total) break;
-    candidates_.push_back({choice, slice, left_count});
-    sides_.push_back(side.unpacked());
-    sides_.emplace_back();
+    candidates.add_left(choice, static_cast<float>(slice + 1), left_count, side);
   }
   side = {};
-  for (size_t i = candidates_.size(); i-- > first;) {
-    for (; slice > candidates_[i].slice; --slice)
-      if (counts[slice] > 0) side.extend(boxes[slice]);
-    sides_[2 * i + 1] = side.unpacked();
+  size_t candidate = candidates.size();
+  for (uint32_t left = total; candidate > first; --slice) {
+    if (counts[slice] == 0) continue;
+    side.extend(boxes[slice]);
+    left -= counts[slice];
+    candidates.set_right(--candidate, side);
+    RAYGRAIN_CHECK_EQ(candidates.left_count(candidate), left);
   }
 }
 
 Cut Slices::best_cut(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order,
-                     const SliceGrid& grid) {
-  candidates_.clear();
-  sides_.clear();
+                     const SliceGrid& grid, CutCandidates& candidates) const {
+  candidates.clear();
   for (uint32_t i = 0; i < static_cast<uint32_t>(order.count); ++i)
-    if (grid.scale[order.choices[i].axis] > 0) sweep(order.choices[i], i, node.count);
-  Cut best;
-  if (candidates_.empty()) return best;
-  measures_.resize(sides_.size());
-  strategy.measure(sides_, measures_, node);
-  size_t winner = candidates_.size();
-  uint32_t larger_side = 0;
-  for (size_t i = 0; i < candidates_.size(); ++i) {
-    const uint32_t left = candidates_[i].left_count, right = node.count - left, larger = std::max(left, right);
-    const double cost =
-        static_cast<double>(measures_[2 * i]) * left + static_cast<double>(measures_[2 * i + 1]) * right;
-    if (!(cost < best.cost || (cost == best.cost && larger < larger_side))) continue;
-    winner = i;
-    best.cost = cost;
-    larger_side = larger;
+    if (grid.scale.at[order.choices[i].axis] > 0) sweep(order.choices[i], i, node.count, candidates);
+  Cut best = candidates.cheapest(strategy, node, order);
+  best.lo = grid.lo.at[best.axis];
+  best.scale = grid.scale.at[best.axis];
+  return best;
+}
+
+Cut best_cut_of_small(std::span<const Reference> references, const ActiveStrategy& strategy, const NodeContext& node,
+                      const AxisOrder& order, CutCandidates& candidates) {
+  candidates.clear();
+  const size_t count = references.size();
+  std::array<const Reference*, kSmallNode> sorted{};
+  for (uint32_t choice = 0; choice < static_cast<uint32_t>(order.count); ++choice) {
+    const auto axis = static_cast<size_t>(order.choices[choice].axis);
+    for (size_t i = 0; i < count; ++i) {
+      size_t place = i;
+      for (; place > 0 && references[i].key.at[axis] < sorted[place - 1]->key.at[axis]; --place)
+        sorted[place] = sorted[place - 1];
+      sorted[place] = &references[i];
+    }
+    const size_t first = candidates.size();
+    PackedBox side;
+    for (uint32_t i = 1; i < count; ++i) {
+      side.extend(sorted[i - 1]->box);
+      if (sorted[i - 1]->key.at[axis] < sorted[i]->key.at[axis])
+        candidates.add_left(choice, sorted[i]->key.at[axis], i, side);
+    }
+    side = {};
+    size_t candidate = candidates.size();
+    for (size_t i = count; candidate > first; --i) {
+      side.extend(sorted[i - 1]->box);
+      if (candidates.left_count(candidate - 1) + 1 == i) candidates.set_right(--candidate, side);
+    }
+    if (count == 2 && candidate < candidates.size()) break;  // two can be parted in one way only
   }
-  if (winner == candidates_.size()) return best;
-  const Candidate& candidate = candidates_[winner];
-  const AxisChoice& axis = order.choices[candidate.choice];
-  return {Cut::Kind::kKeys,
-          axis.axis,
-          axis.quality,
-          grid.lo[axis.axis],
-          grid.scale[axis.axis],
-          static_cast<float>(candidate.slice + 1),
-          0,
-          sides_[2 * winner],
-          sides_[2 * winner + 1],
-          candidate.left_count,
-          node.count - candidate.left_count,
-          measures_[2 * winner],
-          measures_[2 * winner + 1],
-          best.cost};
+  Cut best = candidates.cheapest(strategy, node, order);
+  best.scale = 1;
+  return best;
 }
 
 }  // namespace raygrain::builder

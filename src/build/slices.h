@@ -1,4 +1,5 @@
-// References of one node counted into slices of their keys' box along up to three axes at once, and the best plane.
+// The planes that may part a node, priced: between slices of the keys' box along up to three axes at once, or between
+// any two keys of a small node.
 #pragma once
 
 #include <algorithm>
@@ -36,29 +37,63 @@ struct SliceGrid {
   SliceGrid(const PackedBox& keys, uint32_t count);
 };
 
+/// Planes and what they leave on their sides, of all axes of one node. Keeps its memory.
+class CutCandidates {
+ public:
+  void clear();
+  /// `choice`: number of the axis in the orientation's order. The right side follows.
+  void add_left(uint32_t choice, float limit, uint32_t left_count, const PackedBox& left) {
+    candidates_.push_back({choice, limit, left_count});
+    sides_.push_back(left.unpacked());
+    sides_.emplace_back();
+  }
+  void set_right(size_t candidate, const PackedBox& right) { sides_[2 * candidate + 1] = right.unpacked(); }
+  size_t size() const { return candidates_.size(); }
+  uint32_t left_count(size_t candidate) const { return candidates_[candidate].left_count; }
+
+  /// The cheapest; no cut when there is none. Of planes of equal cost the one with the most even counts, then the
+  /// first. Its `lo` and `scale` are the caller's to fill.
+  Cut cheapest(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order);
+
+ private:
+  struct Candidate {
+    uint32_t choice;
+    float limit;
+    uint32_t left_count;
+  };
+  std::vector<Candidate> candidates_;
+  std::vector<Bounds> sides_;  // left, right of each candidate
+  std::vector<float> measures_;
+};
+
 /// Counts and boxes per axis and slice; one per chunk of references. Keeps its memory.
 class Slices {
  public:
   void clear(uint32_t slices);
   void add(const SliceGrid& grid, std::span<const Reference> references);
+  /// The same for one axis alone: in a third of the time.
+  void add_along(int axis, const SliceGrid& grid, std::span<const Reference> references);
   void merge(const Slices& other);
 
-  /// The cheapest plane of the axes in `order`; no cut when none leaves both sides filled. Of planes of equal cost the
-  /// one with the most even counts, then the first.
-  Cut best_cut(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order, const SliceGrid& grid);
+  /// References in the slices of an axis below `end`.
+  size_t count_below(int axis, uint32_t end) const;
+
+  /// The cheapest plane of the axes in `order`; no cut when none leaves both sides filled.
+  Cut best_cut(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order, const SliceGrid& grid,
+               CutCandidates& candidates) const;
 
  private:
-  struct Candidate {
-    uint32_t choice, slice, left_count;
-  };
-  void sweep(const AxisChoice& axis, uint32_t choice, uint32_t total);
+  void sweep(const AxisChoice& axis, uint32_t choice, uint32_t total, CutCandidates& candidates) const;
 
   uint32_t slices_ = 0;
   std::vector<PackedBox> boxes_;  // axis-major
   std::vector<uint32_t> counts_;
-  std::vector<Candidate> candidates_;
-  std::vector<Bounds> sides_;  // left, right of each candidate
-  std::vector<float> measures_;
 };
+
+/// Nodes of up to this many references are parted at the best plane between any two keys: that takes no longer than
+/// slices, and misses nothing.
+inline constexpr uint32_t kSmallNode = 8;
+Cut best_cut_of_small(std::span<const Reference> references, const ActiveStrategy& strategy, const NodeContext& node,
+                      const AxisOrder& order, CutCandidates& candidates);
 
 }  // namespace raygrain::builder

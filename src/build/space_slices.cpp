@@ -22,11 +22,12 @@ Reference with_box(const Reference& reference, const Bounds& box) {
 
 SpaceGrid::SpaceGrid(const Bounds& box) {
   const Vec3 length = extent(box);
-  lo = FourFloats{box.lo.x, box.lo.y, box.lo.z, 0};
-  step = FourFloats{length.x, length.y, length.z, 0} * (1.0f / kSlices);
   for (int axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<size_t>(axis);
+    lo[i] = box.lo[axis];
+    step[i] = length[axis] * (1.0f / kSlices);
     const float candidate = kSlices / length[axis];
-    scale[axis] = candidate <= std::numeric_limits<float>::max() ? candidate : 0;
+    scale[i] = candidate <= std::numeric_limits<float>::max() ? candidate : 0;
   }
 }
 
@@ -36,26 +37,28 @@ void SpaceSlices::clear() {
 
 void SpaceSlices::add(const SpaceGrid& grid, std::span<const Reference> references) {
   constexpr float kTop = SpaceGrid::kSlices - 1, kLess = 1 - 0x1p-20f;  // an end on a plane lies below it
-  constexpr FourFloats last{kTop, kTop, kTop, kTop};
   for (const Reference& reference : references) {
-    FourFloats lower = reference.box.lower;
-    lower[3] = 0;
-    const FourInts first_slices = truncated(lesser((lower - grid.lo) * grid.scale, last));
-    const FourInts last_slices = truncated(lesser((-reference.box.upper - grid.lo) * grid.scale * kLess, last));
-    for (int axis = 0; axis < 3; ++axis) {
-      auto& slices = slices_[static_cast<size_t>(axis)];
-      const auto first = static_cast<uint32_t>(first_slices[axis]);
-      const auto end = std::max(first, static_cast<uint32_t>(last_slices[axis]));
+    for (size_t axis = 0; axis < 3; ++axis) {
+      auto& slices = slices_[axis];
+      const float lower = (reference.box.lanes.at[axis] - grid.lo[axis]) * grid.scale[axis];
+      const float upper = (-reference.box.lanes.at[axis + 4] - grid.lo[axis]) * grid.scale[axis] * kLess;
+      const auto first = static_cast<uint32_t>(static_cast<int32_t>(lower < kTop ? lower : kTop));
+      const auto last = static_cast<uint32_t>(static_cast<int32_t>(upper < kTop ? upper : kTop));
+      const uint32_t end = std::max(first, last);
       ++slices[first].entries;
       ++slices[end].exits;
+      if (first == end) {
+        slices[first].box.extend(reference.box);
+        continue;
+      }
       PackedBox part = reference.box;
       for (uint32_t slice = first; slice < end; ++slice) {
         const float plane = grid.plane(axis, slice + 1);
-        part.upper[axis] = -plane;
+        part.lanes.at[axis + 4] = -plane;
         slices[slice].box.extend(part);
-        part.lower[axis] = plane;
+        part.lanes.at[axis] = plane;
       }
-      part.upper[axis] = reference.box.upper[axis];
+      part.lanes.at[axis + 4] = reference.box.lanes.at[axis + 4];
       slices[end].box.extend(part);
     }
   }
@@ -91,7 +94,7 @@ void SpaceSlices::sweep(const NodeContext& node, const AxisChoice& axis, const S
     if (left == 0 || right == 0 || left >= node.count || right >= node.count) continue;
     const Bounds left_box = below.unpacked(), right_box = above[i + 1].unpacked();
     if (is_empty(left_box) || is_empty(right_box)) continue;
-    candidates_.push_back({axis, grid.plane(axis.axis, i + 1), left, right});
+    candidates_.push_back({axis, grid.plane(static_cast<size_t>(axis.axis), i + 1), left, right});
     sides_.push_back(left_box);
     sides_.push_back(right_box);
   }
@@ -102,7 +105,7 @@ Cut SpaceSlices::best_cut(const ActiveStrategy& strategy, const NodeContext& nod
   candidates_.clear();
   sides_.clear();
   for (size_t i = 0; i < static_cast<size_t>(order.count); ++i)
-    if (grid.scale[order.choices[i].axis] > 0) sweep(node, order.choices[i], grid);
+    if (grid.scale[static_cast<size_t>(order.choices[i].axis)] > 0) sweep(node, order.choices[i], grid);
   Cut best;
   if (candidates_.empty()) return best;
   measures_.resize(sides_.size());

@@ -16,10 +16,10 @@ namespace raygrain::builder {
 struct SpaceGrid {
   static constexpr uint32_t kSlices = 16;
 
-  FourFloats lo{}, scale{}, step{};  // scale 0: the axis has no length
+  std::array<float, 3> lo{}, scale{}, step{};  // scale 0: the axis has no length
 
   explicit SpaceGrid(const Bounds& box);
-  float plane(int axis, uint32_t below) const { return lo[axis] + step[axis] * static_cast<float>(below); }
+  float plane(size_t axis, uint32_t below) const { return lo[axis] + step[axis] * static_cast<float>(below); }
 };
 
 /// The parts of references' boxes in each slice; one per chunk of references.

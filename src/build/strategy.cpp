@@ -33,6 +33,14 @@ std::string describe(const NodeContext& node) {
   return out.str();
 }
 
+std::span<const Vec3> centroids_or_centers(std::span<const Bounds> bounds, std::span<const Vec3> centroids,
+                                           std::vector<Vec3>& centers) {
+  if (!centroids.empty()) return centroids;
+  centers.resize(bounds.size());
+  for (size_t i = 0; i < bounds.size(); ++i) centers[i] = center(bounds[i]);
+  return centers;
+}
+
 void check_input(const Input& input) {
   if (input.bounds.size() != input.centroids.size())
     throw Error(

@@ -13,7 +13,8 @@ template <class Build>
 Bvh timed_build(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                 BuildLog* log, const Build& build) {
   validate(options);
-  const Input input{bounds, centroids};
+  std::vector<Vec3> centers;
+  const Input input{bounds, centroids_or_centers(bounds, centroids, centers)};
   check_input(input);
   if (log) *log = {};
   Laps laps(log ? &log->times : nullptr);

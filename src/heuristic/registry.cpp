@@ -99,15 +99,23 @@ void check_supply(const Recipe& recipe, const Registry& registry, const Heuristi
 Registry default_registry() {
   return {default_measures(),
           default_orientations(),
-          {{"paper", "Algorithm 1 of the paper", build_paper},
-           {"binned", "binned top-down, all axes, parallel", build_binned},
-           {"sweep", "full sweep, all axes: the reference for quality", build_sweep},
-           {"spatial", "binned top-down with planes that cut triangles, parallel", build_spatial},
-           {"subset", "binned from a random subset: fast, parallel", build_subset}}};
+          {{"paper", "Algorithm 1 of the paper", build_paper, Centres::kBarycentre},
+           {"binned", "binned top-down, all axes, parallel", build_binned, Centres::kBox},
+           {"sweep", "full sweep, all axes: the reference for quality", build_sweep, Centres::kBox},
+           {"spatial", "binned top-down with planes that cut triangles, parallel", build_spatial, Centres::kBox},
+           {"subset", "binned from a random subset: fast, parallel", build_subset, Centres::kBox}}};
 }
 
 const char* builder_name(Quality quality) {
   return quality == Quality::kFast ? "subset" : (quality == Quality::kBalanced ? "binned" : "spatial");
+}
+
+void set_quality(Recipe& recipe, Quality quality) {
+  recipe.builder = builder_name(quality);
+  recipe.for_wide = true;
+  if (quality != Quality::kFast || lower(recipe.orientation) != "all") return;
+  recipe.orientation = "LSPH";
+  recipe.parameters.split_plane_quality_threshold = 1;
 }
 
 Quality parse_quality(std::string_view text) {
@@ -145,6 +153,10 @@ bool needs_samples(const Recipe& recipe, const Registry& registry) {
   return measure_of(recipe, registry).needs_samples;
 }
 
+bool needs_centroids(const Recipe& recipe, const Registry& registry) {
+  return find_entry(registry.builders, recipe.builder, "builder").centres == Centres::kBarycentre;
+}
+
 BuildOptions make_build_options(const Recipe& recipe, const Registry& registry, const HeuristicInput& input) {
   check_supply(recipe, registry, input);
   const OrientationEntry& orientation = orientation_of(recipe, registry);
@@ -156,6 +168,10 @@ BuildOptions make_build_options(const Recipe& recipe, const Registry& registry, 
   options.fallback->orientation = longest_axis_orientation();
   options.parameters = recipe.parameters;
   options.merge_leaves = true;
+  if (recipe.for_wide) {
+    options.parameters.bins = 32;
+    options.rare_leaf_size = 8;
+  }
   options.clip = input.clip;
   if (orientation.all_axes) {
     options.parameters.split_plane_quality_threshold = 0;
@@ -170,6 +186,7 @@ Bvh build_tree(const Recipe& recipe, const Registry& registry, const HeuristicIn
   BuildOptions options = make_build_options(recipe, registry, input);
   options.threads = run.threads;
   options.progress = run.progress;
+  if (builder.centres == Centres::kBox) centroids = {};
   return builder.build(bounds, centroids, options, log);
 }
 

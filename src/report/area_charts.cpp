@@ -1,4 +1,5 @@
 // Many influence areas: octrees of several depths against a list.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -27,25 +28,33 @@ std::vector<Metric> metrics() {
        column_value("pruned_cost_with_fallback")},
       {"Time to find the areas of a point", "ns per point", true, nanoseconds("top_level_query_seconds")},
       {"Areas listed that do not hold the point", "mean per point", false, column_value("top_level_false_candidates")},
-      {"Time to build the top level", "ns", true, nanoseconds("top_level_build_seconds")},
+      {"Time to build the top level", "seconds", true, column_value("top_level_build_seconds")},
       {"Memory of the top level", "bytes", true, column_value("top_level_memory_bytes")}};
 }
 
-/// The number of areas from which on some octree's query is faster than the list's, in words.
+/// Least time per ray of the list or the octrees over a number of areas.
+double least_time(std::span<const ResultRow> rows, double areas, bool list) {
+  double least = kNotMeasured;
+  for (const ResultRow& row : rows)
+    if (const double time = nanoseconds_per_ray(row);
+        row.number("areas") == areas && (row.text("top_level") == "list") == list && !(time >= least))
+      least = time;
+  return least;
+}
+
+/// From how many areas on users gain by an octree, in words.
 std::string break_even(std::span<const ResultRow> rows) {
-  const RowValue query = column_value("top_level_query_seconds"), areas = column_value("areas");
-  double first = kNotMeasured;
-  for (const std::string& count : distinct(rows, [&](const ResultRow& row) { return fmt::format("{}", areas(row)); })) {
-    double list = kNotMeasured, octree = kNotMeasured;
-    for (const ResultRow& row : rows) {
-      if (fmt::format("{}", areas(row)) != count) continue;
-      double& least = row.text("top_level") == "list" ? list : octree;
-      if (!(query(row) >= least)) least = query(row);
-    }
-    if (octree < list && !(std::stod(count) >= first)) first = std::stod(count);
+  double first = kNotMeasured, most = 0;
+  for (const ResultRow& row : rows) {
+    const double areas = row.number("areas");
+    most = std::max(most, areas);
+    if (least_time(rows, areas, false) < least_time(rows, areas, true) && !(areas >= first)) first = areas;
   }
-  return std::isnan(first) ? "no octree answers faster than the list"
-                           : fmt::format("octrees answer faster than the list from {:.0f} areas on", first);
+  if (std::isnan(first)) return "Users gain no time by an octree";
+  return fmt::format(
+      "Users gain time by an octree from {:.0f} areas on: with {:.0f} areas a ray takes {} ns with the best one and {} "
+      "ns with the list",
+      first, most, short_number(least_time(rows, most, false)), short_number(least_time(rows, most, true)));
 }
 
 Chart scene_chart(const StudyResults& study, const std::string& scene) {
@@ -59,7 +68,7 @@ Chart scene_chart(const StudyResults& study, const std::string& scene) {
   const double saved = mean_of(rows, [](const ResultRow& row) {
     return row.number("pruned_cost_with_fallback") / row.number("global_pruned_cost");
   });
-  chart.finding = fmt::format("By the time to look up a point {}", break_even(rows));
+  chart.finding = break_even(rows);
   if (!std::isnan(saved))
     chart.finding += fmt::format(
         "; rays of the areas cost users {} times the pruned cost of one general tree, mean of all numbers of areas",

@@ -10,15 +10,16 @@
 #include "report/canvas.h"
 #include "report/charts.h"
 #include "report/drawing.h"
+#include "report/panel_drawing.h"
 #include "report/scale.h"
 
 namespace raygrain {
 
 namespace {
 
-constexpr double kWidth = 1200, kUprightHeight = 360, kMargin = 24, kRightMargin = 32, kMostLabelWidth = 420;
+constexpr double kUprightHeight = 360, kRightMargin = 32;
 constexpr double kDotRow = 30, kBarWidth = 12, kDot = 9;
-constexpr Colour kInk{33, 37, 41}, kSoft{95, 103, 112}, kRule{222, 226, 230}, kWhite{255, 255, 255};
+constexpr Colour kRule{222, 226, 230};
 
 Colour parsed(const std::string& hex) {
   const auto part = [&](size_t i) {
@@ -39,23 +40,10 @@ std::string tick_text(double value) {
   return fmt::format("{:.10g}", value);
 }
 
-/// What is said of a point when a reader points at it.
-std::string description(const ChartPoint& point, bool published) {
-  std::string text = point.series;
-  if (!point.group.empty()) text += ", " + point.group;
-  if (!point.label.empty()) text += ", " + point.label;
-  if (!std::isnan(point.x)) text += ", at " + short_number(point.x);
-  text += (published ? ", published: " : ": ") + short_number(point.y);
-  if (point.count > 1)
-    text += " (mean of " + std::to_string(point.count) + ", from " + short_number(point.low) + " to " +
-            short_number(point.high) + ")";
-  return text;
-}
-
 class PanelDrawing {
  public:
   explicit PanelDrawing(const ChartPanel& panel) : panel_(panel) {
-    drawing_.width = kWidth;
+    drawing_.width = kPanelWidth;
     std::vector<double> values{panel.reference}, numbers;
     for (const std::vector<ChartPoint>* points : {&panel.measured, &panel.published})
       for (const ChartPoint& point : *points) {
@@ -104,12 +92,12 @@ class PanelDrawing {
 
   /// Title, legend, and the name of the axis of values.
   void head() {
-    text(kMargin, 32, panel_.title, kInk);
-    double x = kMargin, y = 64;
+    text(kPanelMargin, 32, panel_.title, kInk);
+    double x = kPanelMargin, y = 64;
     const auto entry = [&](const std::string& name, bool published, Colour colour) {
       const double width = 44 + text_width(ascii_text(name));
-      if (x + width > kWidth - kMargin && x > kMargin) {
-        x = kMargin;
+      if (x + width > kPanelWidth - kPanelMargin && x > kPanelMargin) {
+        x = kPanelMargin;
         y += 26;
       }
       if (published)
@@ -123,19 +111,19 @@ class PanelDrawing {
     if (!panel_.published.empty()) entry("published", true, kInk);
     top_ = y + 16;
     if (!lies_down(panel_)) {
-      text(kMargin, top_ + 16, panel_.y.title, kSoft);
+      text(kPanelMargin, top_ + 16, panel_.y.title, kSoft);
       top_ += 34;
     }
   }
 
   void frame() {
-    left_ = kMargin + 64;
-    right_ = kWidth - kRightMargin;
+    left_ = kPanelMargin + 64;
+    right_ = kPanelWidth - kRightMargin;
     if (lies_down(panel_)) {
       double widest = 0;
       for (const std::string& group : panel_.groups)
         widest = std::max(widest, double{1} * text_width(ascii_text(group)));
-      left_ = kMargin + std::min(widest, kMostLabelWidth) + 16;
+      left_ = kPanelMargin + std::min(widest, kMostLabelWidth) + 16;
       bottom_ = top_ + row_height() * static_cast<double>(panel_.groups.size());
       drawing_.height = std::floor(bottom_ + 64);
       text((left_ + right_) / 2, bottom_ + 50, panel_.y.title, kSoft, Anchor::kMiddle);
@@ -227,6 +215,7 @@ class PanelDrawing {
       }
       case ChartKind::kDots:
         return dot(value, group_place(point.group), kDot, colour, title);
+      case ChartKind::kMatrix:
       case ChartKind::kPoints:
       case ChartKind::kLines:
         if (std::isfinite(point.x)) dot(number_place(point.x), value, kDot, colour, title);
@@ -274,12 +263,16 @@ class PanelDrawing {
 
 }  // namespace
 
+Drawing panel_drawing(const ChartPanel& panel) {
+  return panel.kind == ChartKind::kMatrix ? matrix_drawing(panel) : PanelDrawing(panel).draw();
+}
+
 std::string chart_svg(const ChartPanel& panel) {
-  return svg_text(PanelDrawing(panel).draw());
+  return svg_text(panel_drawing(panel));
 }
 
 Image chart_image(const ChartPanel& panel) {
-  return painted(PanelDrawing(panel).draw());
+  return painted(panel_drawing(panel));
 }
 
 }  // namespace raygrain

@@ -121,9 +121,16 @@ double nanoseconds_per_ray(const ResultRow& row) {
 ChartPanel line_panel(std::span<const ResultRow> rows, const std::string& title, const RowText& series,
                       const std::pair<ChartAxis, RowValue>& x, const std::pair<ChartAxis, RowValue>& y) {
   ChartPanel panel{.title = title, .kind = ChartKind::kLines, .x = x.first, .y = y.first};
-  const std::vector<ResultRow> shown = filtered(
-      rows, [&](const ResultRow& row) { return std::isfinite(x.second(row)) && std::isfinite(y.second(row)); });
-  panel.series = coloured(distinct(shown, series));
+  const auto fits = [](const std::pair<ChartAxis, RowValue>& axis, const ResultRow& row) {
+    const double value = axis.second(row);
+    return std::isfinite(value) && (value > 0 || !axis.first.logarithmic);
+  };
+  const std::vector<ResultRow> shown =
+      filtered(rows, [&](const ResultRow& row) { return fits(x, row) && fits(y, row); });
+  // Colours as in the other panels of the chart, whose rows may have more values.
+  const std::vector<std::string> names = distinct(shown, series);
+  for (ChartSeries& s : coloured(distinct(rows, series)))
+    if (std::find(names.begin(), names.end(), s.name) != names.end()) panel.series.push_back(std::move(s));
   panel.measured = group_means(
       shown, [&](const ResultRow& row) { return fmt::format("{}", x.second(row)); }, series, y.second);
   for (ChartPoint& point : panel.measured) point.x = std::stod(std::exchange(point.group, {}));
@@ -162,6 +169,16 @@ std::vector<ChartPanel> user_bars(std::span<const ResultRow> rows, const std::ve
   return panels;
 }
 
+std::vector<RankedRecipe> ranking(std::span<const ResultRow> rows, const std::string& baseline, const RowValue& value) {
+  std::vector<RankedRecipe> ranked;
+  for (const std::string& recipe : recipe_names(rows))
+    if (const PairedRatio ratio = paired_ratio(rows, recipe, baseline, value); ratio.count > 0)
+      ranked.push_back({recipe, ratio});
+  std::stable_sort(ranked.begin(), ranked.end(),
+                   [](const RankedRecipe& a, const RankedRecipe& b) { return a.ratio.mean < b.ratio.mean; });
+  return ranked;
+}
+
 std::string short_number(double value) {
   if (std::isnan(value)) return "-";
   if (value == 0 || std::abs(value) >= 1e6 || std::abs(value) < 1e-4) return fmt::format("{:.3g}", value);
@@ -173,13 +190,17 @@ std::string percent(double share) {
   return short_number(share * 100) + " %";
 }
 
+std::string counted(size_t count, std::string_view thing) {
+  return fmt::format("{} {}{}", count, thing, count == 1 ? "" : "s");
+}
+
 std::string user_sentence(const StudyResults& study, const std::string& recipe, const std::string& baseline) {
   const PairedRatio pruned = paired_ratio(study.rows, recipe, baseline, column_value("pruned_cost"));
   const PairedRatio time = paired_ratio(study.rows, recipe, baseline, nanoseconds_per_ray);
   if (pruned.count == 0) return {};
   std::string text = fmt::format("users pay {} times the pruned cost of {}", short_number(pruned.mean), baseline);
   if (time.count > 0) text += fmt::format(" and {} times its time", short_number(time.mean));
-  return text + fmt::format(" (geometric mean of {} test{})", pruned.count, pruned.count == 1 ? "" : "s");
+  return text + fmt::format(" (geometric mean of {})", counted(pruned.count, "test"));
 }
 
 Verdict verdict_of(size_t agreeing, size_t all) {

@@ -31,6 +31,16 @@ Chart tuning_table(const StudyResults& study);
 
 /// All recipes against the baseline: pruned cost, time, full cost; by group, by scene; prediction; building.
 std::vector<Chart> recipe_charts(const StudyResults& study);
+/// Of those: errors by recipe and by what was shot, and the shape of the trees.
+Chart recipe_prediction_chart(const StudyResults& study);
+Chart tree_shape_chart(const StudyResults& study, const std::string& baseline);
+
+struct RankedRecipe {
+  std::string recipe;
+  PairedRatio ratio;
+};
+/// Recipes by their ratio to the baseline, the best first.
+std::vector<RankedRecipe> ranking(std::span<const ResultRow> rows, const std::string& baseline, const RowValue& value);
 
 // What the paper called for, or left at an estimate: nothing where the study holds no such rows.
 std::vector<Chart> parameter_charts(const StudyResults& study);
@@ -78,6 +88,8 @@ std::vector<ChartPanel> user_bars(std::span<const ResultRow> rows, const std::ve
 /// "1.35 times", "0.94 times"; three significant digits elsewhere: "0.0123", "12.3", "1234".
 std::string short_number(double value);
 std::string percent(double share);
+/// "1 test", "64 tests".
+std::string counted(size_t count, std::string_view thing);
 /// One sentence on what users pay: pruned cost, and time where it was measured, against the baseline.
 std::string user_sentence(const StudyResults& study, const std::string& recipe, const std::string& baseline);
 

@@ -64,9 +64,10 @@ Chart measured_chart(const StudyResults& study) {
   }
   chart.panels.push_back(std::move(parts));
   chart.finding = fmt::format(
-      "With one influence area users keep {} times the memory of the global tree, median of {} areas; as the paper "
+      "With one influence area users keep {} times the memory of the global tree, median of {}; as the paper "
       "counts it is {} times.",
-      short_number(median_of(rows, total)), rows.size(), short_number(median_of(rows, counted)));
+      short_number(median_of(rows, total)), raygrain::counted(rows.size(), "area"),
+      short_number(median_of(rows, counted)));
   return chart;
 }
 

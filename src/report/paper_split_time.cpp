@@ -70,10 +70,11 @@ Chart split_time_figure(const StudyResults& study) {
   }
   chart.verdict = std::abs(std::log(ratio.mean)) < std::log1p(kSameTime) ? Verdict::kConfirms : Verdict::kContradicts;
   chart.finding = fmt::format(
-      "Choosing orientations with SPFH takes {} times as long as with LSPH (geometric mean of {} builds), where the "
+      "Choosing orientations with SPFH takes {} times as long as with LSPH (geometric mean of {}), where the "
       "paper "
       "found them the same; the whole build takes {} times as long.",
-      short_number(ratio.mean), ratio.count, short_number(paired_ratio(study.rows, kFacing, kBaseline, build).mean));
+      short_number(ratio.mean), counted(ratio.count, "build"),
+      short_number(paired_ratio(study.rows, kFacing, kBaseline, build).mean));
   chart.notes.emplace_back("Times of other machines cannot be compared; the paper compares the two heuristics only.");
   return chart;
 }

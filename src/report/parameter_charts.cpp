@@ -12,6 +12,10 @@ namespace raygrain {
 
 namespace {
 
+std::string plain_number(double value) {
+  return fmt::format("{:.6g}", value);
+}
+
 bool is(const ResultRow& row, const char* column, double value) {
   return std::abs(row.number(column) - value) < 1e-6;
 }
@@ -58,8 +62,8 @@ Chart threshold_chart(const StudyResults& study, const std::string& baseline) {
   const std::vector<ResultRow> rows =
       filtered(study.rows, [](const ResultRow& row) { return has_default_bins(row) && has_default_levels(row); });
   const auto pair = [](const ResultRow& row) {
-    return fmt::format("acceptable {}, excellent {}", short_number(row.number("acceptable_ratio")),
-                       short_number(row.number("excellent_ratio")));
+    return fmt::format("acceptable {}, excellent {}", plain_number(row.number("acceptable_ratio")),
+                       plain_number(row.number("excellent_ratio")));
   };
   double best = kNotMeasured;
   for (const Metric& metric : metrics()) {
@@ -78,9 +82,9 @@ Chart threshold_chart(const StudyResults& study, const std::string& baseline) {
       if (chart.panels.empty() && !(ratio.mean >= best)) {
         best = ratio.mean;
         chart.finding = fmt::format(
-            "Users pay least with quality {}, {}: {} times the pruned cost of the paper's parameters over {} tests.",
-            short_number(own.front().number("split_plane_quality_threshold")), pair(own.front()),
-            short_number(ratio.mean), ratio.count);
+            "Users pay least with quality {}, {}: {} times the pruned cost of the paper's parameters over {}.",
+            plain_number(own.front().number("split_plane_quality_threshold")), pair(own.front()),
+            short_number(ratio.mean), counted(ratio.count, "test"));
       }
     }
     chart.panels.push_back(std::move(panel));
@@ -111,8 +115,9 @@ Chart single_chart(std::span<const ResultRow> rows, const std::string& baseline,
       panel.measured.push_back(ratio_point(metric.series, x, ratio));
       if (names.size() > 1 || ratio.mean >= best) continue;
       best = ratio.mean;
-      chart.finding = fmt::format("The {} is lowest with {}: {} times that of the paper's parameters over {} tests.",
-                                  metric.series, short_number(x), short_number(ratio.mean), ratio.count);
+      chart.finding =
+          fmt::format("The {} is lowest with {}: {} times that of the paper's parameters over {}.", metric.series,
+                      plain_number(x), short_number(ratio.mean), counted(ratio.count, "test"));
     }
   }
   panel.series = coloured(names);

@@ -1,4 +1,5 @@
 // All areas of a scene at once, and rays that belong to none of them.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -17,17 +18,18 @@ std::string recipe_of(const ResultRow& row) {
   return row.recipe;
 }
 
-/// Is there gain at this share of foreign rays, in how many scenes?
-std::string gains(std::span<const ResultRow> rows, const RowValue& paid) {
-  std::string text;
-  for (const std::string& share :
-       distinct(rows, [](const ResultRow& row) { return std::string(row.text("foreign_share")); })) {
-    const std::vector<ResultRow> here =
-        filtered(rows, [&](const ResultRow& row) { return row.text("foreign_share") == share; });
-    text += fmt::format("{}{} at {} foreign", text.empty() ? "" : ", ", short_number(mean_of(here, paid)),
-                        percent(here.front().number("foreign_share")));
-  }
-  return text;
+/// "0.939 (no foreign rays) to 1.00 (100 % foreign rays)".
+std::string from_to(std::span<const ResultRow> rows, const RowValue& paid) {
+  const auto by_share = [](const ResultRow& a, const ResultRow& b) {
+    return a.number("foreign_share") < b.number("foreign_share");
+  };
+  const auto [least, most] = std::minmax_element(rows.begin(), rows.end(), by_share);
+  const auto at = [&](double share) {
+    return short_number(
+        mean_of(filtered(rows, [&](const ResultRow& row) { return row.number("foreign_share") == share; }), paid));
+  };
+  const double lo = least->number("foreign_share"), hi = most->number("foreign_share");
+  return fmt::format("{} ({} foreign rays) to {} ({} foreign rays)", at(lo), percent(lo), at(hi), percent(hi));
 }
 
 Chart foreign_chart(const StudyResults& study) {
@@ -44,10 +46,12 @@ Chart foreign_chart(const StudyResults& study) {
   };
   add("What users pay: pruned cost, with areas against without", pruned);
   add("What users pay: time, with areas against without", time);
-  for (const std::string& recipe : distinct(study.rows, recipe_of))
-    chart.finding +=
-        fmt::format("{}{}: users pay {} times the pruned cost of the global tree alone",
-                    chart.finding.empty() ? "" : "; ", recipe, gains(rows_of_recipe(study.rows, recipe), pruned));
+  for (const std::string& recipe : distinct(study.rows, recipe_of)) {
+    const std::vector<ResultRow> rows = rows_of_recipe(study.rows, recipe);
+    chart.finding += fmt::format("{}With {} users pay {} times the pruned cost of the global tree alone",
+                                 chart.finding.empty() ? "" : ". ", recipe, from_to(rows, pruned));
+    if (any_measured(rows, time)) chart.finding += fmt::format(" and {} times its time", from_to(rows, time));
+  }
   chart.finding += ".";
   return chart;
 }

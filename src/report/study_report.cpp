@@ -107,7 +107,7 @@ std::string values_of(const StudyResults& study, std::string_view column) {
 }
 
 void add_facts(StudyReport& report, const StudyResults& study) {
-  std::string text = fmt::format("{} row{}", study.rows.size(), study.rows.size() == 1 ? "" : "s");
+  std::string text = counted(study.rows.size(), "row");
   for (const char* column : {"scene", "commit", "compiler", "cpu", "isa", "threads", "seed", "rays"})
     if (const std::string values = values_of(study, column); !values.empty())
       text += fmt::format("; {}: {}", column, values);

@@ -8,6 +8,7 @@
 #include "raygrain/refine.h"
 #include "raygrain/study.h"
 
+#include "study/frame_row.h"
 #include "study/scene_pool.h"
 #include "study/tree_row.h"
 
@@ -41,6 +42,7 @@ struct GridRow {
   std::vector<std::string> run() const;
 
  private:
+  std::vector<Ray> sample(const SceneTrees& trees) const;
   LocalTree build(const SceneTrees& trees, std::span<const Ray> samples, const RayMeasure& own) const;
 };
 
@@ -53,17 +55,29 @@ LocalTree GridRow::build(const SceneTrees& trees, std::span<const Ray> samples, 
   return local;
 }
 
+/// None where the recipe has no use for them.
+std::vector<Ray> GridRow::sample(const SceneTrees& trees) const {
+  if (!needs_samples(recipe.recipe, grid->registry)) return {};
+  std::vector<Ray> samples = sample_rays(area.area, seed);
+  if (!recipe.visible) return samples;
+  for (Ray& ray : samples) ray.tmax = std::min(ray.tmax, intersect(trees.global, trees.mesh, ray).t);
+  return samples;
+}
+
 std::vector<std::string> GridRow::run() const {
   static const std::vector<StudyColumn> columns = grid_columns();
   const SceneTrees& trees = scene->get();
   const AreaGeometry geometry(area.area);
-  const std::vector<Ray> samples =
-      needs_samples(recipe.recipe, grid->registry) ? sample_rays(area.area, seed) : std::vector<Ray>{};
+  const std::vector<Ray> samples = sample(trees);
   const BuildOptions options = make_build_options(recipe.recipe, grid->registry, {&area.area, samples});
-  const LocalTree local = build(trees, samples, options.strategy.measure);
   const std::vector<Ray> cast = cast_rays(AreaRays{.area = area.area, .spread = rays.spread}, rays.count, seed);
   Cells cells(columns);
   study::set_recipe_cells(cells, recipe.recipe, options);
+  if (recipe.in_frame) {
+    study::set_frame_cells(cells, trees, geometry, recipe.recipe, options, cast);
+    return cells.take();
+  }
+  const LocalTree local = build(trees, samples, options.strategy.measure);
   study::set_tree_cells(cells, study::exact_test(trees, local, geometry, cast, grid->costs), options.strategy.measure);
   return cells.take();
 }

@@ -95,12 +95,14 @@ StudyRecipe read_recipe(const JsonReader& item, const Registry& registry) {
     return text.with_place([&] { return parse_recipe(text.text(), registry); });
   };
   if (item.is_text()) return {recipe_name(parsed(item)), "", parsed(item)};
-  item.expect_keys(Keys{"recipe", "name", "setting", "parameters", "reinsert"});
+  item.expect_keys(Keys{"recipe", "name", "setting", "parameters", "reinsert", "in_frame", "visible"});
   StudyRecipe row{"", "", parsed(item.at("recipe"))};
   row.combo = item.has("name") ? item.at("name").text() : recipe_name(row.recipe);
   if (const auto setting = item.find("setting")) row.setting = setting->text();
   if (const auto parameters = item.find("parameters")) read_parameters(*parameters, row.recipe.parameters);
   row.reinsert = whole_or(item, "reinsert", 0, 0) > 0;
+  row.in_frame = whole_or(item, "in_frame", 0, 0) > 0;
+  row.visible = whole_or(item, "visible", 0, 0) > 0;
   return row;
 }
 

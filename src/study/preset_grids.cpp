@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "raygrain/heuristics.h"
+
 #include "study/presets.h"
 #include "study/sources.h"
 
@@ -43,6 +45,34 @@ StudyRecipe reinserted(StudyRecipe row) {
   row.setting = "reinsertion";
   row.reinsert = true;
   return row;
+}
+
+StudyRecipe in_frame(StudyRecipe row) {
+  row.setting = "in frame";
+  row.in_frame = true;
+  return row;
+}
+
+StudyRecipe visible(StudyRecipe row) {
+  row.setting = "visibility";
+  row.visible = true;
+  return row;
+}
+
+/// Projected area times the share of the sample rays through a box that are still alive there. A sample that has ended
+/// counts a little, or boxes that none reached would be worth nothing.
+MeasureEntry visible_projected_area() {
+  return {"PAH-VISIBLE", "projected area, weighted by the share of sample rays alive in the box", true, true,
+          [](const HeuristicInput& input) {
+            constexpr float kFaint = 4;  // samples' worth of doubt
+            std::vector<Ray> endless(input.samples.begin(), input.samples.end());
+            for (Ray& ray : endless) ray.tmax = kInf;
+            const RayMeasure alive = sampled_measure(input.samples), all = sampled_measure(endless);
+            const RayMeasure projected = projected_area_measure(*input.area);
+            return RayMeasure(
+                [=](const Bounds& box) { return projected(box) * (alive(box) + kFaint) / (all(box) + kFaint); },
+                projected.total({}));
+          }};
 }
 
 constexpr std::array kCombos{"PAH+SPFH", "PAH+LSPH", "SAH+SPFH", "SAH+LSPH"};
@@ -106,11 +136,17 @@ StudyGrid corrected_grid(const StudySources& sources) {
     grid.recipes.push_back(recipe(combo, grid));
   for (const char* combo : {"SAH+ALL@binned", "PAH+ALL@binned"})
     grid.recipes.push_back(reinserted(recipe(combo, grid)));
+  for (const char* combo : {"PAH+ALL@binned", "PAH+ALL@spatial"}) grid.recipes.push_back(in_frame(recipe(combo, grid)));
+  grid.registry.measures.push_back(visible_projected_area());
+  for (const char* combo : {"SAMPLED+ALL@binned", "PAH-VISIBLE+ALL@binned"})
+    grid.recipes.push_back(visible(recipe(combo, grid)));
   grid.leave_out = [](const StudyScene& scene, const StudyArea& area, const StudyRecipe& row, const StudyRays& rays) {
     const bool is_plane = std::holds_alternative<PlaneArea>(area.area.shape);
     if (rays.spread == PointSpread::kAngle && (is_plane || !is_core(row))) return true;
     const bool is_half = area.variant == "15deg" || area.variant == "45deg";
-    return is_large(scene) && (rays.spread == PointSpread::kAngle || (is_half && !is_core(row)));
+    // A thousand sample rays for each of millions of boxes take minutes.
+    const bool is_sampled = row.recipe.measure == "SAMPLED" || row.visible;
+    return is_large(scene) && (rays.spread == PointSpread::kAngle || is_sampled || (is_half && !is_core(row)));
   };
   return grid;
 }

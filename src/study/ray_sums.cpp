@@ -7,12 +7,7 @@
 namespace raygrain::study {
 namespace {
 
-struct Search {
-  Hit hit;
-  double full = 0, pruned = 0;
-};
-
-Search search(const Bvh& tree, const TriangleMesh& mesh, const Ray& ray, const CostModel& costs) {
+RaySearch search(const Bvh& tree, const TriangleMesh& mesh, const Ray& ray, const CostModel& costs) {
   TraceCounters full, pruned;
   intersect(tree, mesh, ray, {}, {.prune = false}, &full);
   const Hit hit = intersect(tree, mesh, ray, {}, {}, &pruned);
@@ -21,17 +16,29 @@ Search search(const Bvh& tree, const TriangleMesh& mesh, const Ray& ray, const C
 
 }  // namespace
 
+TreeTest exact_test(const SceneTrees& scene, const LocalTree& local, const AreaGeometry& geometry,
+                    std::span<const Ray> rays, const CostModel& costs) {
+  return {scene,
+          local,
+          geometry,
+          rays,
+          costs,
+          [&scene, &local, costs](const Ray& ray) { return search(*local.tree, scene.mesh, ray, costs); },
+          [&geometry](const Ray& ray) { return geometry.serves(ray); },
+          [&geometry](const Ray& ray, const Hit& hit) { return hit.t <= exit_distance(geometry.region(), ray); }};
+}
+
 RaySums sum_rays(const TreeTest& test) {
   RaySums sums;
   sums.rays = test.rays.size();
   for (const Ray& ray : test.rays) {
-    const Search global = search(test.scene.global, test.scene.mesh, ray, test.costs);
+    const RaySearch global = search(test.scene.global, test.scene.mesh, ray, test.costs);
     sums.global += global.full;
     sums.global_pruned += global.pruned;
     sums.hits += is_hit(global.hit) ? 1 : 0;
     bool accepted = false;
     if (test.serves(ray)) {
-      const Search local = search(*test.local.tree, test.scene.mesh, ray, test.costs);
+      const RaySearch local = test.search(ray);
       ++sums.served;
       sums.local += local.full;
       sums.local_pruned += local.pruned;

@@ -18,7 +18,7 @@ double number(size_t value) {
   return static_cast<double>(value);
 }
 
-void set_ray_cells(Cells& cells, const RaySums& sums) {
+void set_sums(Cells& cells, const RaySums& sums) {
   const double rays = number(sums.rays), served = number(sums.served), misses = number(sums.rays - sums.accepted);
   const double mean = sums.local / served, miss = sums.miss / misses;
   cells.set("real_cost_local", mean);
@@ -38,13 +38,27 @@ void set_ray_cells(Cells& cells, const RaySums& sums) {
   cells.set("mismatches", number(sums.mismatches));
 }
 
-void set_shape_cells(Cells& cells, const Bvh& tree, const AreaGeometry& geometry, const RayMeasure& own,
-                     const CostModel& costs) {
-  const TreeStats stats = analyze(tree, own, costs);
-  cells.set("estimated_own", stats.estimated_cost);
+void set_window_cells(Cells& cells, const Bvh& tree, const AreaGeometry& geometry, const CostModel& costs) {
   cells.set("estimated_pah",
             analyze(tree, projected_area_measure(geometry.area(), Culling::kWindow), costs).estimated_cost);
   cells.set("estimated_sah", analyze(tree, surface_area_measure(), costs).estimated_cost);
+  const OverlapStats overlap = analyze_overlap(tree, geometry);
+  for (size_t i = 0; i < kOverlapLevels.size(); ++i) {
+    const std::string name = "overlap" + std::to_string(kOverlapLevels[i]);
+    cells.set(name, overlap.plain[i]);
+    cells.set(name + "_culled", overlap.culled[i]);
+  }
+}
+
+}  // namespace
+
+void set_ray_cells(Cells& cells, const TreeTest& test) {
+  set_sums(cells, sum_rays(test));
+}
+
+void set_own_cells(Cells& cells, const Bvh& tree, const RayMeasure& own, const CostModel& costs) {
+  const TreeStats stats = analyze(tree, own, costs);
+  cells.set("estimated_own", stats.estimated_cost);
   cells.set("max_level", stats.max_level);
   cells.set("mean_leaf_depth", stats.mean_leaf_depth);
   cells.set("triangles", number(stats.triangles));
@@ -54,12 +68,6 @@ void set_shape_cells(Cells& cells, const Bvh& tree, const AreaGeometry& geometry
   cells.set("small_child_ratio", stats.small_child_ratio);
   cells.set("large_child_ratio", stats.large_child_ratio);
   cells.set("memory_bytes", number(stats.memory_bytes));
-  const OverlapStats overlap = analyze_overlap(tree, geometry);
-  for (size_t i = 0; i < kOverlapLevels.size(); ++i) {
-    const std::string name = "overlap" + std::to_string(kOverlapLevels[i]);
-    cells.set(name, overlap.plain[i]);
-    cells.set(name + "_culled", overlap.culled[i]);
-  }
 }
 
 void set_build_cells(Cells& cells, const LocalTree& local) {
@@ -71,34 +79,34 @@ void set_build_cells(Cells& cells, const LocalTree& local) {
   cells.set("candidate_seconds", stats.times.candidates);
 }
 
-/// Seconds of one nearest-hit search, mean over the rays, one thread, least of a few passes.
-double search_seconds(const WideBvh& tree, std::span<const Ray> rays) {
+double search_seconds(std::span<const Ray> rays, const std::function<void(std::span<const Ray>)>& search_all) {
   if (rays.empty()) return std::nan("");
-  std::vector<Hit> hits(rays.size());
   double least = kInf;
   for (int pass = 0; pass < kTimedPasses; ++pass) {
     const Timer timer;
-    tree.intersect(rays, hits);
+    search_all(rays);
     least = std::min(least, timer.seconds());
   }
   return least / number(rays.size());
 }
 
-void set_time_cells(Cells& cells, const TreeTest& test, const RayMeasure& own) {
+std::vector<Ray> served_rays(const TreeTest& test) {
   std::vector<Ray> served;
   std::copy_if(test.rays.begin(), test.rays.end(), std::back_inserter(served), test.serves);
-  const WideBvh wide(*test.local.tree, test.scene.mesh, {.measure = own});
-  cells.set("ray_seconds", search_seconds(wide, served));
-  cells.set("global_ray_seconds", search_seconds(test.scene.wide_global, served));
+  return served;
 }
 
-}  // namespace
-
 void set_tree_cells(Cells& cells, const TreeTest& test, const RayMeasure& own) {
-  set_shape_cells(cells, *test.local.tree, test.geometry, own, test.costs);
+  set_window_cells(cells, *test.local.tree, test.geometry, test.costs);
+  set_own_cells(cells, *test.local.tree, own, test.costs);
   set_build_cells(cells, test.local);
-  set_ray_cells(cells, sum_rays(test));
-  set_time_cells(cells, test, own);
+  set_ray_cells(cells, test);
+  const std::vector<Ray> served = served_rays(test);
+  std::vector<Hit> hits(served.size());
+  const WideBvh wide(*test.local.tree, test.scene.mesh, {.measure = own});
+  cells.set("ray_seconds", search_seconds(served, [&](std::span<const Ray> rays) { wide.intersect(rays, hits); }));
+  cells.set("global_ray_seconds",
+            search_seconds(served, [&](std::span<const Ray> rays) { test.scene.wide_global.intersect(rays, hits); }));
 }
 
 void set_recipe_cells(Cells& cells, const Recipe& recipe, const BuildOptions& options) {
@@ -110,17 +118,6 @@ void set_recipe_cells(Cells& cells, const Recipe& recipe, const BuildOptions& op
   cells.set("excellent_ratio", static_cast<double>(options.parameters.excellent_ratio));
   cells.set("bins", options.parameters.bins);
   cells.set("max_non_fallback_levels", options.parameters.max_non_fallback_levels);
-}
-
-TreeTest exact_test(const SceneTrees& scene, const LocalTree& local, const AreaGeometry& geometry,
-                    std::span<const Ray> rays, const CostModel& costs) {
-  return {scene,
-          local,
-          geometry,
-          rays,
-          costs,
-          [&geometry](const Ray& ray) { return geometry.serves(ray); },
-          [&geometry](const Ray& ray, const Hit& hit) { return hit.t <= exit_distance(geometry.region(), ray); }};
 }
 
 }  // namespace raygrain::study
@@ -174,6 +171,7 @@ std::vector<StudyColumn> grid_columns() {
           {"excellent_ratio"},
           {"bins"},
           {"max_non_fallback_levels"},
+          {"frame"},
           {"build_seconds", false},
           {"orientation_seconds", false},
           {"candidate_seconds", false},

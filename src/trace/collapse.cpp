@@ -53,15 +53,18 @@ class Collapse {
     auto* out = new (wide_.memory.data() + offset) float[10 * count];
     float size = 0;
     for (size_t lane = 0; lane < count; ++lane) {
-      const Bounds box = triangle_bounds(mesh_, ids_[lane]);
+      const std::array corners{mesh_.vertex(ids_[lane], 0), mesh_.vertex(ids_[lane], 1), mesh_.vertex(ids_[lane], 2)};
       for (int axis = 0; axis < 3; ++axis) {
-        size = std::max(size, difference_above(box.hi[axis], box.lo[axis]));
-        for (int c = 0; c < 3; ++c)
-          out[static_cast<size_t>(3 * c + axis) * count + lane] = mesh_.vertex(ids_[lane], c)[axis];
+        const float a = corners[0][axis], b = corners[1][axis], c = corners[2][axis];
+        size = std::max(size, std::max({a, b, c}) - std::min({a, b, c}));
+        float* const place = out + static_cast<size_t>(axis) * count + lane;
+        place[0] = a;
+        place[3 * count] = b;
+        place[6 * count] = c;
       }
       out[9 * count + lane] = std::bit_cast<float>(ids_[lane]);
     }
-    refs_[index] = leaf_ref(offset, static_cast<uint32_t>(count), size);
+    refs_[index] = leaf_ref(offset, static_cast<uint32_t>(count), std::nextafter(size, kInf));  // whatever was rounded
   }
 
   void write_node(size_t index) {

@@ -1,6 +1,7 @@
 #include "raygrain/coverage.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -27,7 +28,7 @@ namespace {
 constexpr size_t kRaysPerTile = 4;
 /// ... and the grid does not fit the caches anyway.
 constexpr size_t kSmallGrid = size_t{1} << 20;
-constexpr size_t kMostRaysPerTask = size_t{1} << 18;
+constexpr size_t kMostRaysPerTask = size_t{1} << 16;  // so many fit a cache with their answers
 constexpr size_t kLeastRaysPerTask = 4096;
 
 size_t bytes_of(const CoverageGrid& grid) {
@@ -229,6 +230,33 @@ void Coverage::intersect_from(Vec3 eye, std::span<const Vec3> directions, std::s
            threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
              coverage_kernels(data_->isa).nearest(grid, batch, hits.data(), others, counts);
            });
+}
+
+std::vector<std::vector<uint32_t>> Coverage::divide(std::span<const Coverage* const> coverages,
+                                                    std::span<const Vec3> points, bool are_directions,
+                                                    std::vector<uint32_t>& rest, unsigned threads) {
+  if (coverages.empty() || coverages.size() >= kNoGrid)
+    throw Error(ErrorCode::kUsage, "Coverage::divide", "takes 1 ... 254 coverages");
+  std::vector<const CoverageGrid*> grids;
+  for (const Coverage* coverage : coverages) grids.push_back(&coverage->data_->grid);
+  const EyeGrids eye{grids.data(), static_cast<uint32_t>(grids.size())};
+  const CoverageKernels& table = coverage_kernels(coverages[0]->data_->isa);
+  std::vector<uint8_t> chosen(points.size());
+  parallel_for(points.size(), kMostRaysPerTask, threads, [&](size_t begin, size_t end) {
+    table.choose(eye, are_directions, points.data() + begin, end - begin, chosen.data() + begin);
+  });
+  std::array<size_t, 256> counts{};
+  for (const uint8_t c : chosen) ++counts[c];
+  std::array<uint32_t*, 256> next{};
+  std::vector<std::vector<uint32_t>> lists(coverages.size());
+  for (size_t i = 0; i < lists.size(); ++i) {
+    lists[i].resize(counts[i]);
+    next[i] = lists[i].data();
+  }
+  rest.resize(rest.size() + counts[kNoGrid]);
+  next[kNoGrid] = rest.data() + rest.size() - counts[kNoGrid];
+  for (size_t i = 0; i < chosen.size(); ++i) *next[chosen[i]]++ = static_cast<uint32_t>(i);
+  return lists;
 }
 
 size_t Coverage::cell_count() const {

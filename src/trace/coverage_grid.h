@@ -52,8 +52,8 @@ struct alignas(64) CoverageTriangle {
   float a[4], b[4], c[4];
   float margin;
   uint32_t id;
-  float spare;
-  float ahead;
+  float per_ahead;  // -1 / ahead; 0 where the depth is not well known
+  float ahead;      // <= 0
 };
 static_assert(sizeof(CoverageTriangle) == 64);
 

@@ -129,6 +129,7 @@ void set_plane(const CoverageGrid& grid, const PlaneOfDepth& plane, SeenTriangle
   seen.record.ahead = static_cast<float>(plane.ahead * scale);
   if (!(std::abs(plane.ahead) * grid.errors.greatest_s > 0x1p-16 * size)) return;
   seen.has_plane = true;
+  seen.record.per_ahead = -1 / seen.record.ahead;
   seen.slope_x = -plane.a / plane.ahead;
   seen.slope_y = -plane.b / plane.ahead;
   seen.offset = -plane.c / plane.ahead;

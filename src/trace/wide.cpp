@@ -44,14 +44,14 @@ WideBvh::WideBvh(const Bvh& tree, const TriangleMesh& mesh, const WideOptions& o
 }
 
 Hit WideBvh::intersect(const Ray& ray, Hit known, const SearchOptions& options) const {
-  if (data_->tree.is_empty() || !is_valid(ray) || !(ray.tmin <= ray.tmax)) return known;
+  if (data_->tree.is_empty()) return known;
   if (options.prune) return data_->kernels->nearest(data_->tree, ray, known, options.skip_before);
   TraceCounters unwanted;
   return data_->kernels->nearest_counted(data_->tree, ray, known, options, unwanted);
 }
 
 bool WideBvh::occluded(const Ray& ray, const SearchOptions& options) const {
-  if (data_->tree.is_empty() || !is_valid(ray) || !(ray.tmin <= ray.tmax)) return false;
+  if (data_->tree.is_empty()) return false;
   if (options.prune) return data_->kernels->any(data_->tree, ray, options.skip_before);
   TraceCounters unwanted;
   return data_->kernels->any_counted(data_->tree, ray, options, unwanted);
@@ -74,12 +74,12 @@ void WideBvh::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, unsi
 }
 
 Hit WideBvh::intersect_counted(const Ray& ray, TraceCounters& counters, Hit known, const SearchOptions& options) const {
-  if (data_->tree.is_empty() || !is_valid(ray) || !(ray.tmin <= ray.tmax)) return known;
+  if (data_->tree.is_empty()) return known;
   return data_->kernels->nearest_counted(data_->tree, ray, known, options, counters);
 }
 
 bool WideBvh::occluded_counted(const Ray& ray, TraceCounters& counters, const SearchOptions& options) const {
-  if (data_->tree.is_empty() || !is_valid(ray) || !(ray.tmin <= ray.tmax)) return false;
+  if (data_->tree.is_empty()) return false;
   return data_->kernels->any_counted(data_->tree, ray, options, counters);
 }
 

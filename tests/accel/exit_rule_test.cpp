@@ -22,6 +22,13 @@ AcceleratorCounters check(const Accelerator& scene, const Ray& ray) {
 }
 
 /// Membership as in programs that look at vertices only.
+/// Without coverage, which would answer most of these rays before any tree is asked.
+AcceleratorOptions trees_alone() {
+  AcceleratorOptions options;
+  options.coverage = std::nullopt;
+  return options;
+}
+
 bool has_vertex_inside(const AreaGeometry& geometry, Vec3 a, Vec3 b, Vec3 c) {
   return contains(geometry.region(), a) || contains(geometry.region(), b) || contains(geometry.region(), c);
 }
@@ -31,7 +38,7 @@ TEST(ExitRule, TrianglesWithoutVertexInTheRegionAreMembers) {
   add_floor(mesh, 7, 0.1f);   // wholly inside the region
   add_floor(mesh, 5, 100.f);  // passes through it, no vertex inside
   const Ray ray{{0, 0, 0}, {0, 0, 1}};
-  const Accelerator exact(mesh, {z_area("lamp", 0, 10)}, test::by_trees());
+  const Accelerator exact(mesh, {z_area("lamp", 0, 10)}, trees_alone());
   EXPECT_EQ(exact.local_trees()[0].tree->prims.size(), 2u);
   EXPECT_EQ(exact.intersect(ray).triangle, 1u);
   EXPECT_EQ(exact.intersect(ray).t, 5.0f);
@@ -40,9 +47,9 @@ TEST(ExitRule, TrianglesWithoutVertexInTheRegionAreMembers) {
   EXPECT_EQ(counters.global_searches, 0u);
 
   // The injected rule changes the tree, and here the answer: the test can tell the difference.
-  AcceleratorOptions options;
+  AcceleratorOptions options = trees_alone();
   options.membership = has_vertex_inside;
-  const Accelerator vertex_only(mesh, {z_area("lamp", 0, 10)}, test::by_trees(options));
+  const Accelerator vertex_only(mesh, {z_area("lamp", 0, 10)}, options);
   EXPECT_EQ(vertex_only.local_trees()[0].tree->prims, std::vector<uint32_t>{0});
   EXPECT_EQ(vertex_only.intersect(ray).triangle, 0u);
 }
@@ -55,7 +62,7 @@ TEST(ExitRule, HitsBeyondTheExitDoNotCount) {
   // Beside the region, met at t = 4.
   add_triangle(mesh, {1.4f, -1, 4}, {4, -1, 4}, {1.4f, 2, 4});
   const Ray ray{{0, 0, 0}, {0.4f, 0, 1}};  // leaves through the side at t = 2.5
-  const Accelerator scene(mesh, {z_area("lamp", 0, 10, 1, 0.2f)}, test::by_trees());
+  const Accelerator scene(mesh, {z_area("lamp", 0, 10, 1, 0.2f)}, trees_alone());
   const LocalTree& local = scene.local_trees()[0];
   ASSERT_EQ(local.tree->prims.size(), 2u);
   ASSERT_EQ(intersect(*local.tree, mesh, ray).triangle, 0u);  // what stopping there would answer
@@ -78,7 +85,7 @@ TEST(ExitRule, TiesAtTheExitGoToTheLowerIndex) {
   add_floor(mesh, 4, 50);
   for (const float depth : {4.f, std::nextafter(4.f, 0.f), std::nextafter(4.f, 9.f), 3.99999f, 4.00001f, 2.f}) {
     SCOPED_TRACE(depth);
-    const Accelerator scene(mesh, {z_area("front", 0, depth), z_area("back", depth, 1)}, test::by_trees());
+    const Accelerator scene(mesh, {z_area("front", 0, depth), z_area("back", depth, 1)}, trees_alone());
     check(scene, {{0, 0, 0}, {0, 0, 1}});
     EXPECT_EQ(scene.intersect({{0, 0, 0}, {0, 0, 1}}).triangle, 0u);
   }
@@ -92,7 +99,7 @@ TEST(ExitRule, ChainOfAreasIsWalkedToTheHit) {
     for (uint32_t i = 0; i < 10; ++i) areas.push_back(z_area(std::to_string(i), static_cast<float>(i), 1));
     add_floor(mesh, 20, 1);
     add_floor(mesh, static_cast<float>(hit_in) + 0.5f, 1);
-    const Accelerator scene(mesh, areas, test::by_trees());
+    const Accelerator scene(mesh, areas, trees_alone());
     const AcceleratorCounters counters = check(scene, {{0.25f, 0.25f, 0}, {0, 0, 1}});
     EXPECT_EQ(counters.local_searches, hit_in + 1);
     EXPECT_EQ(counters.continued, hit_in);
@@ -105,7 +112,7 @@ TEST(ExitRule, GapsBetweenAreasAreNotSkipped) {
   TriangleMesh mesh;
   add_floor(mesh, 1.5f, 1);  // between the areas
   add_floor(mesh, 2.5f, 1);
-  const Accelerator scene(mesh, {z_area("first", 0, 1), z_area("second", 2, 1)}, test::by_trees());
+  const Accelerator scene(mesh, {z_area("first", 0, 1), z_area("second", 2, 1)}, trees_alone());
   const AcceleratorCounters counters = check(scene, {{0, 0, 0}, {0, 0, 1}});
   EXPECT_EQ(counters.local_searches, 1u);
   EXPECT_EQ(counters.global_searches, 1u);
@@ -117,7 +124,7 @@ TEST(ExitRule, LongChainsEndInTheGlobalTree) {
   std::vector<InfluenceArea> areas;
   for (uint32_t i = 0; i < 60; ++i) areas.push_back(z_area("", static_cast<float>(i), 1));
   for (uint32_t i = 0; i < 3; ++i) add_floor(mesh, 55.5f, 1);
-  const Accelerator scene(mesh, areas, test::by_trees());
+  const Accelerator scene(mesh, areas, trees_alone());
   const AcceleratorCounters counters = check(scene, {{0, 0, 0}, {0, 0, 1}});
   EXPECT_GT(counters.local_searches, 8u);
   EXPECT_LT(counters.local_searches, 60u);
@@ -144,7 +151,7 @@ TEST(ExitRule, OverlappingAreasAreTriedByPredictedCost) {
 TEST(ExitRule, AnAreaThatTouchesNothingAnswersForItsRegion) {
   TriangleMesh mesh;
   add_floor(mesh, 6, 1);
-  const Accelerator scene(mesh, {z_area("empty", 0, 4)}, test::by_trees());
+  const Accelerator scene(mesh, {z_area("empty", 0, 4)}, trees_alone());
   EXPECT_TRUE(scene.local_trees()[0].tree->nodes.empty());
   EXPECT_EQ(scene.local_trees()[0].predicted_cost, 0);
   EXPECT_EQ(check(scene, {{0, 0, 0}, {0, 0, 1}}).global_searches, 1u);
@@ -157,7 +164,7 @@ TEST(ExitRule, AnAreaThatTouchesNothingAnswersForItsRegion) {
 TEST(ExitRule, RangesOfTheRayAreKept) {
   TriangleMesh mesh;
   for (const float z : {-3.f, 1.f, 2.f, 3.f, 5.f, 9.f}) add_floor(mesh, z, 1);
-  const Accelerator scene(mesh, {z_area("first", 0, 4), z_area("second", 4, 4)}, test::by_trees());
+  const Accelerator scene(mesh, {z_area("first", 0, 4), z_area("second", 4, 4)}, trees_alone());
   for (const float tmin : {-10.f, -3.f, -1e-30f, -0.f, 0.f, 1.f, 1.5f, 3.f, 4.f, 4.5f, 6.f, 9.f, 20.f})
     for (const float tmax : {-5.f, -0.f, 0.f, 0.5f, 1.f, 3.f, 4.f, 5.f, 8.f, 9.f, kInf}) {
       SCOPED_TRACE(std::to_string(tmin) + " ... " + std::to_string(tmax));
@@ -172,7 +179,7 @@ TEST(ExitRule, RangesOfTheRayAreKept) {
 TEST(ExitRule, RaysAgainstTheGrainAreServed) {
   TriangleMesh mesh;
   for (const float z : {-3.f, 1.f, 2.f, 3.f, 5.f}) add_floor(mesh, z, 1);
-  const Accelerator scene(mesh, {z_area("lamp", 0, 4)}, test::by_trees());
+  const Accelerator scene(mesh, {z_area("lamp", 0, 4)}, trees_alone());
   const AcceleratorCounters counters = check(scene, {{0, 0, 4}, {0, 0, -2}});
   EXPECT_EQ(counters.local_hits, 1u);
   EXPECT_EQ(counters.global_searches, 0u);
@@ -181,7 +188,7 @@ TEST(ExitRule, RaysAgainstTheGrainAreServed) {
 TEST(ExitRule, ForeignAndInvalidRays) {
   TriangleMesh mesh;
   add_floor(mesh, 2, 1);
-  const Accelerator scene(mesh, {z_area("lamp", 0, 4)}, test::by_trees());
+  const Accelerator scene(mesh, {z_area("lamp", 0, 4)}, trees_alone());
   AcceleratorCounters counters = check(scene, {{0, 0, 0}, {1, 0, 1}});  // 45 degrees off
   EXPECT_EQ(counters.areas_tested, 0u);  // no area has such a direction: none is looked up
   EXPECT_EQ(counters.areas_serving, 0u);
@@ -234,7 +241,7 @@ TEST(ExitRule, OriginsOnTheBorderAreInside) {
   for (const InfluenceArea& area : areas) {
     SCOPED_TRACE(area.name);
     const AreaGeometry geometry(area);
-    const Accelerator scene(mesh, {area}, test::by_trees());
+    const Accelerator scene(mesh, {area}, trees_alone());
     uint64_t served = 0;
     for (const Vec3 origin : border_points(geometry.region()))
       for (const double sense : {1., -1.}) {
@@ -250,7 +257,7 @@ TEST(ExitRule, RaysAtThePointOfAPointArea) {
   TriangleMesh mesh;
   for (const float z : {1.f, 3.f, 9.f}) add_floor(mesh, z, 50);
   const InfluenceArea area{"eye", PointArea{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 60, 60, 0.5f, 5}};
-  const Accelerator scene(mesh, {area}, test::by_trees());
+  const Accelerator scene(mesh, {area}, trees_alone());
   // From the eye itself: outside the frustum, whose near face lies before it.
   EXPECT_EQ(check(scene, {{0, 0, 0}, {0.1f, 0.2f, 1}}).local_searches, 0u);
   EXPECT_EQ(check(scene, {{0.1f, 0.2f, 1}, {0.1f, 0.2f, 1}}).local_hits, 1u);
@@ -263,7 +270,7 @@ TEST(ExitRule, OneAreaMayGoOnInOneOfAnotherKind) {
   add_floor(mesh, 9, 1);
   const InfluenceArea camera{"camera", PointArea{{0, 0, -1}, {0, 0, 1}, {0, 1, 0}, 60, 60, 0.1f, 6}};
   const InfluenceArea sun = z_area("sun", 4, 8);
-  const Accelerator scene(mesh, {sun, camera}, test::by_trees());
+  const Accelerator scene(mesh, {sun, camera}, trees_alone());
   const AcceleratorCounters counters = check(scene, {{0, 0, 0}, {0, 0, 1}});
   EXPECT_EQ(counters.local_searches, 2u);
   EXPECT_EQ(counters.continued, 1u);

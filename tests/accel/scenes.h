@@ -25,12 +25,6 @@ inline InfluenceArea z_area(const std::string& name, float z_begin, float depth,
   return {name, PlaneArea{{0, 0, z_begin}, {0, 0, 1}, {0, 1, 0}, half, half, depth}, tolerance};
 }
 
-/// Every ray takes the way through areas and trees: what coverage answers takes none.
-inline AcceleratorOptions by_trees(AcceleratorOptions options = {}) {
-  options.coverage.reset();
-  return options;
-}
-
 /// An accelerator from local trees with predicted costs of the test's choice, one per area.
 inline Accelerator with_costs(const TriangleMesh& mesh, const std::vector<InfluenceArea>& areas,
                               const std::vector<double>& costs, const TopLevelOptions& top_level = {}) {

@@ -2,26 +2,32 @@
 #include <algorithm>
 #include <limits>
 
+#include "raygrain/error.h"
+
 #include "build/build_support.h"
 #include "support/mesh_families.h"
 
 namespace raygrain::test {
 namespace {
 
-/// Least cost over all axes and slices of the centroids' box, each priced by a repartition.
+/// Least cost over all axes and slices of the centroids' box, or between any two centroids of up to eight primitives,
+/// each priced by a repartition.
 double slow_least_cost(const Prims& prims, const std::vector<uint32_t>& ids, uint32_t bins) {
   const RayMeasure measure;
   Bounds centroids;
   for (const uint32_t id : ids) centroids.extend(prims.centroids[id]);
   double least = std::numeric_limits<double>::infinity();
-  const uint32_t slices = std::min(bins, 4 + static_cast<uint32_t>(ids.size()) / 2);
+  const uint32_t slices = std::min(bins, 4 + static_cast<uint32_t>(ids.size()) / 16);
+  const bool small = ids.size() <= 8;
   for (int axis = 0; axis < 3; ++axis)
-    for (uint32_t i = 1; i < slices; ++i) {
-      const float lo = centroids.lo[axis], scale = static_cast<float>(slices) / (centroids.hi[axis] - lo);
+    for (uint32_t i = small ? 0 : 1; i < (small ? ids.size() : slices); ++i) {
+      const float lo = centroids.lo[axis], length = centroids.hi[axis] - lo;
+      const float scale = static_cast<float>(slices) * (1 - 0x1p-20f) / length;
       Bounds left, right;
       double left_count = 0, right_count = 0;
       for (const uint32_t id : ids) {
-        const bool is_left = (prims.centroids[id][axis] - lo) * scale < static_cast<float>(i);
+        const float key = prims.centroids[id][axis];
+        const bool is_left = small ? key < prims.centroids[ids[i]][axis] : (key - lo) * scale < static_cast<float>(i);
         (is_left ? left : right).extend(prims.bounds[id]);
         (is_left ? left_count : right_count) += 1;
       }
@@ -72,6 +78,32 @@ TEST(Binned, EverySplitIsTheCheapestOnAllMeshFamilies) {
     SCOPED_TRACE(mesh.name);
     expect_cheapest_splits(prims_of(mesh.mesh), 16);
   }
+}
+
+TEST(Binned, RareNodesAreNotSplit) {
+  const Prims prims = random_prims(2000, 7);
+  BuildOptions options;
+  const Bvh whole = binned(prims, options);
+  options.rare_leaf_size = 8;
+  for (const float share : {0.0f, 20.0f, 1e9f}) {
+    options.rare_share = share;
+    const Bvh bvh = binned(prims, options);
+    EXPECT_EQ(find_defect(bvh, prims.bounds), std::nullopt);
+    const RayMeasure measure;
+    const float limit = share / 2000 * measure(bvh.nodes[0].bounds);
+    for (const Bvh::Node& node : bvh.nodes) {
+      const bool is_rare = measure(node.bounds) < limit;
+      if (node.is_leaf()) {
+        EXPECT_LE(node.count, is_rare ? 8u : 1u);
+      } else {  // no inner node that should have been a leaf
+        EXPECT_FALSE(is_rare && bvh.nodes[node.first].count + bvh.nodes[node.first + 1].count <= 8 &&
+                     bvh.nodes[node.first].is_leaf() && bvh.nodes[node.first + 1].is_leaf());
+      }
+    }
+    EXPECT_EQ(bvh.nodes.size() < whole.nodes.size(), share > 0);
+  }
+  options.rare_share = -1;
+  EXPECT_THROW(binned(prims, options), Error);
 }
 
 TEST(Binned, AdmitsAxesByQuality) {

@@ -172,7 +172,7 @@ TEST(StudyReport, StudiesOfOtherThingsHaveTheirOwnCharts) {
                            {{"Wood", "PAH+ALL", "0", "10", "20"}, {"Wood", "PAH+ALL", "1", "20", "20"}}};
   const std::string gains =
       chart_of(report_of(stress), "Several areas at once, and rays that none of them knows").finding;
-  EXPECT_NE(gains.find("0.500 at 0 % foreign, 1.00 at 100 % foreign"), std::string::npos) << gains;
+  EXPECT_NE(gains.find("0.500 (0 % foreign rays) to 1.00 (100 % foreign rays)"), std::string::npos) << gains;
 }
 
 TEST(StudyReport, JsonIsThereForEveryChart) {
@@ -233,6 +233,12 @@ TEST(ChartPictures, AreDrawnOnWhiteInTheirOwnColours) {
     EXPECT_GT(dark, 100u) << static_cast<int>(kind);
     EXPECT_NE(chart_svg(panel).find("a, one"), std::string::npos) << "pointing at a mark tells its value";
   }
+  const ChartPanel matrix{.kind = ChartKind::kMatrix,
+                          .groups = {"g"},
+                          .series = {{"a", "#ff0000"}},
+                          .measured = {{.series = "a", .group = "g", .y = 0.25}},
+                          .reference = 1};
+  EXPECT_NE(chart_svg(matrix).find(">0.250</text>"), std::string::npos);
   EXPECT_GT(chart_image(ChartPanel{}).height, 100u) << "nothing to show is no crash";
   const ChartPanel huge{.y = {"", true},
                         .groups = {"g"},

@@ -33,9 +33,9 @@ class AnyStream {
       const Ray& ray = rays_[next_];
       s.index = next_++;
       flags_[s.index] = 0;
-      if (!is_valid(ray) || !(ray.tmin <= ray.tmax)) continue;
-      if (!s.boxes.prepare(tree_, ray, -kInf)) {
-        flags_[s.index] = any_carefully(tree_, ray, {}, nullptr) ? 1 : 0;
+      if (!(ray.tmin <= ray.tmax)) continue;
+      if (!s.boxes.prepare(tree_, ray, -kInf)) [[unlikely]] {
+        flags_[s.index] = is_valid(ray) && any_carefully(tree_, ray, {}, nullptr) ? 1 : 0;
         continue;
       }
       s.triangles.prepare(ray);

@@ -32,7 +32,7 @@ struct Block {
   Vec3 points[kBlock + 16];
 };
 
-using FloatTag = hn::CappedTag<float, 16>;
+using FloatTag = hn::CappedTag<float, 8>;
 using Floats = hn::Vec<FloatTag>;
 
 HWY_INLINE Floats turn(const CoverageGrid& grid, size_t row, Floats x, Floats y, Floats z) {
@@ -41,16 +41,25 @@ HWY_INLINE Floats turn(const CoverageGrid& grid, size_t row, Floats x, Floats y,
   return hn::MulAdd(hn::Set(d, r.x), x, hn::MulAdd(hn::Set(d, r.y), y, hn::Mul(hn::Set(d, r.z), z)));
 }
 
-/// Loads `count` rays of the batch from number `begin` on and finds their tiles.
-HWY_INLINE void place(const CoverageGrid& grid, const ColumnBatch& batch, size_t begin, size_t count, Block& block) {
-  const FloatTag d;
-  const hn::RebindToSigned<FloatTag> di;
+/// Loads `count` rays of the batch from number `begin` on.
+HWY_INLINE void load(const ColumnBatch& batch, size_t begin, size_t count, Block& block) {
+  if (batch.subset == nullptr) {
+    const Vec3* points = batch.rays.points + batch.first + begin;
+    std::copy(points, points + count, block.points);
+    for (size_t i = 0; i < count; ++i) block.number[i] = batch.number(begin + i);
+    return;
+  }
   for (size_t i = 0; i < count; ++i) {
-    block.number[i] =
-        batch.subset != nullptr ? batch.subset[begin + i] : static_cast<uint32_t>(batch.first + begin + i);
+    block.number[i] = batch.subset[begin + i];
     block.points[i] = batch.rays.points[block.number[i]];
   }
-  const bool are_directions = batch.rays.kind == ColumnRays::Kind::kFrom;
+}
+
+/// Finds the tiles of the block's first `count` rays.
+HWY_INLINE void place(const CoverageGrid& grid, ColumnRays::Kind kind, size_t count, Block& block) {
+  const FloatTag d;
+  const hn::RebindToSigned<FloatTag> di;
+  const bool are_directions = kind == ColumnRays::Kind::kFrom;
   const Vec3 center = are_directions ? Vec3{} : grid.map.center;
   const Floats x_lo = hn::Set(d, grid.x_lo), y_lo = hn::Set(d, grid.y_lo), scale = hn::Set(d, grid.tiles_per_unit);
   const auto last_x = hn::Set(di, static_cast<int32_t>(grid.tiles_x) - 1);
@@ -91,6 +100,35 @@ HWY_INLINE void place(const CoverageGrid& grid, const ColumnBatch& batch, size_t
   }
 }
 
+/// The first grid whose window holds each of up to kBlock points of a block.
+HWY_INLINE void choose_grids(const EyeGrids& eye, bool are_directions, size_t count, const Block& block,
+                             uint8_t* chosen) {
+  const FloatTag d;
+  const Vec3 center = are_directions ? Vec3{} : eye.grids[0]->map.center;
+  for (size_t i = 0; i < count; i += hn::Lanes(d)) {
+    Floats px, py, pz;
+    hn::LoadInterleaved3(d, &block.points[i].x, px, py, pz);
+    px = hn::Sub(px, hn::Set(d, center.x));
+    py = hn::Sub(py, hn::Set(d, center.y));
+    pz = hn::Sub(pz, hn::Set(d, center.z));
+    Floats best = hn::Set(d, static_cast<float>(kNoGrid));
+    for (uint32_t g = eye.count; g-- > 0;) {
+      const CoverageGrid& grid = *eye.grids[g];
+      const Floats x = turn(grid, 0, px, py, pz), y = turn(grid, 1, px, py, pz), z = turn(grid, 2, px, py, pz);
+      const auto in_x =
+          hn::And(hn::Ge(x, hn::Mul(hn::Set(d, grid.x_lo), z)), hn::Le(x, hn::Mul(hn::Set(d, grid.x_hi), z)));
+      const auto in_y =
+          hn::And(hn::Ge(y, hn::Mul(hn::Set(d, grid.y_lo), z)), hn::Le(y, hn::Mul(hn::Set(d, grid.y_hi), z)));
+      const auto inside = hn::And(hn::And(in_x, in_y), hn::Gt(z, hn::Zero(d)));
+      best = hn::IfThenElse(inside, hn::Set(d, static_cast<float>(g)), best);
+    }
+    alignas(64) float numbers[hn::MaxLanes(FloatTag())];
+    hn::Store(best, d, numbers);
+    for (size_t lane = 0; lane < std::min(hn::Lanes(d), count - i); ++lane)
+      chosen[i + lane] = static_cast<uint8_t>(numbers[lane]);
+  }
+}
+
 HWY_INLINE uint32_t cell_at(const CoverageTile& tile, float x, float y) {
   const int32_t across = 1 << tile.levels;
   const auto size = static_cast<float>(across);
@@ -105,37 +143,67 @@ HWY_INLINE uint16_t code_of(const CoverageTile& tile, float s) {
   return static_cast<uint16_t>(std::min(std::max(code, 0.0f), 65535.0f));
 }
 
-alignas(16) constexpr uint32_t kDepthLane[4] = {0, 0, 0, 0xffffffffu};
-
-/// A column against one triangle: bit i for each lane.
-struct Verdict {
-  uint32_t possible, sure;
-};
-
 using FourTag = hn::CappedTag<float, 4>;
 constexpr size_t kFourLanes = hn::MaxLanes(FourTag());
+constexpr size_t kFourParts = 4 / kFourLanes;
+alignas(16) constexpr uint32_t kDepthLane[4] = {0, 0, 0, 0xffffffffu};
 
-HWY_INLINE Verdict meet(const CoverageTriangle& triangle, float x, float y, float s) {
-  const FourTag d;
-  const auto px = hn::Set(d, x), py = hn::Set(d, y), ps = hn::Set(d, s);
-  const auto margin = hn::Set(d, triangle.margin);
-  Verdict verdict{0, 0};
-  for (size_t i = 0; i < 4; i += kFourLanes) {
-    auto e = hn::MulAdd(hn::Load(d, triangle.a + i), px,
-                        hn::MulAdd(hn::Load(d, triangle.b + i), py, hn::Load(d, triangle.c + i)));
-    if (i + kFourLanes == 4) {
-      const auto last = hn::Load(d, &triangle.margin + i);
-      const auto is_depth = hn::MaskFromVec(hn::BitCast(d, hn::Load(hn::RebindToUnsigned<FourTag>(), kDepthLane + i)));
-      e = hn::Add(e, hn::IfThenElseZero(is_depth, hn::Mul(last, ps)));
-    }
-    uint8_t possible[8] = {}, sure[8] = {};
-    hn::StoreMaskBits(d, hn::Ge(e, hn::Neg(margin)), possible);
-    hn::StoreMaskBits(d, hn::Gt(e, margin), sure);
-    verdict.possible |= static_cast<uint32_t>(possible[0]) << i;
-    verdict.sure |= static_cast<uint32_t>(sure[0]) << i;
+/// The four lanes of a triangle.
+struct Four {
+  hn::Vec<FourTag> part[kFourParts];
+
+  /// Bit i: lane i is at least, or above, the bound.
+  HWY_INLINE uint32_t at_least(float bound) const {
+    uint32_t result = 0;
+    for (size_t i = 0; i < kFourParts; ++i)
+      result |= bits(hn::Ge(part[i], hn::Set(FourTag(), bound))) << (i * kFourLanes);
+    return result;
   }
-  return verdict;
-}
+  HWY_INLINE uint32_t above(float bound) const {
+    uint32_t result = 0;
+    for (size_t i = 0; i < kFourParts; ++i)
+      result |= bits(hn::Gt(part[i], hn::Set(FourTag(), bound))) << (i * kFourLanes);
+    return result;
+  }
+
+ private:
+  static HWY_INLINE uint32_t bits(hn::Mask<FourTag> mask) {
+    uint8_t stored[8] = {};
+    hn::StoreMaskBits(FourTag(), mask, stored);
+    return stored[0];
+  }
+};
+
+/// A column in registers.
+struct ColumnLanes {
+  hn::Vec<FourTag> x, y;
+
+  HWY_INLINE ColumnLanes(float x_value, float y_value)
+      : x(hn::Set(FourTag(), x_value)), y(hn::Set(FourTag(), y_value)) {}
+
+  /// a x + b y + c.
+  HWY_INLINE Four at(const CoverageTriangle& triangle) const {
+    const FourTag d;
+    Four result;
+    for (size_t i = 0; i < kFourParts; ++i) {
+      const size_t lane = i * kFourLanes;
+      result.part[i] = hn::MulAdd(hn::Load(d, triangle.a + lane), x,
+                                  hn::MulAdd(hn::Load(d, triangle.b + lane), y, hn::Load(d, triangle.c + lane)));
+    }
+    return result;
+  }
+  /// The same with ahead * s in lane 3.
+  HWY_INLINE Four at(const CoverageTriangle& triangle, hn::Vec<FourTag> s) const {
+    const FourTag d;
+    Four result = at(triangle);
+    const size_t lane = 4 - kFourLanes;
+    const auto depth_lane =
+        hn::MaskFromVec(hn::BitCast(d, hn::Load(hn::RebindToUnsigned<FourTag>(), kDepthLane + lane)));
+    auto& last = result.part[kFourParts - 1];
+    last = hn::Add(last, hn::IfThenElseZero(depth_lane, hn::Mul(hn::Load(d, &triangle.margin + lane), s)));
+    return result;
+  }
+};
 
 }  // namespace
 }  // namespace raygrain::HWY_NAMESPACE

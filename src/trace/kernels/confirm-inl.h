@@ -34,44 +34,50 @@ struct ConfirmationInput {
   Floats tmin, tmax;
 };
 
+/// kSure: floats have shown that the weights of all pairs are on one side, that the sum is steep, and that t >= tmin.
+template <bool kSure>
 HWY_INLINE void confirm(const ConfirmationInput& in, Verdicts& verdicts) {
   constexpr double kUnit = 0x1p-53;  // the bounds are those of triangle.cpp
   const DoubleVectors moment = cross(in.direction, in.to_a), normal = cross(in.ab, in.ac);
   const Doubles sum = dot(in.direction, normal), numerator = dot(in.to_a, normal);
   const Doubles minus_b = dot(moment, in.ac), weight_c = dot(moment, in.ab);
-  const Doubles weight_b = doubles(0.0) - minus_b;
-  const Doubles weight_a = sum + minus_b - weight_c;
-
   const Doubles distance = max(max(absolute(in.to_a.x), absolute(in.to_a.y)), absolute(in.to_a.z));
   const Doubles area = in.size * in.size * doubles(64 * kUnit);
   const Doubles sum_error = in.length * area, numerator_error = distance * area;
   const Doubles error = in.length * in.size * doubles(128 * kUnit) * (distance + in.size);
-  const Doubles lowest = min(min(weight_a, weight_b), weight_c), highest = max(max(weight_a, weight_b), weight_c);
-  const Doubles below = doubles(0.0) - error;
-  const uint32_t miss = less(lowest, below) & less(error, highest);
-  const uint32_t inside = less(error, lowest) | less(highest, below);
-  const Doubles magnitude = absolute(sum);
-  const uint32_t steep = less(sum_error * doubles(4.0), magnitude);
 
   const Doubles inverse = doubles(1.0) / sum, twice = absolute(inverse + inverse);
-  const Doubles t = numerator * inverse, u = weight_b * inverse, v = weight_c * inverse;
+  const Doubles t = numerator * inverse, minus_u = minus_b * inverse, v = weight_c * inverse;
   const Doubles t_size = absolute(t);
   const Doubles t_radius =
       multiply_add(multiply_add(t_size, sum_error, numerator_error), twice, t_size * doubles(8 * kUnit));
   // u and v lie in [0, 1] and were computed below 2.
   const Doubles radius = multiply_add(multiply_add(sum_error, doubles(2.0), error), twice, doubles(16 * kUnit));
-  const Floats t_low = round(t - t_radius), u_low = round(u - radius), v_low = round(v - radius);
-  const uint32_t t_sure = inside & steep & equal(t_low, round(t + t_radius));
-  const uint32_t sure = t_sure & equal(u_low, round(u + radius)) & equal(v_low, round(v + radius));
-  const uint32_t in_range = less_equal(in.tmin, t_low) & less_equal(t_low, in.tmax);
+  const Floats t_low = round(t - t_radius), u_low = round(doubles(0.0) - minus_u - radius), v_low = round(v - radius);
+  const uint32_t t_sure = equal(t_low, round(t + t_radius));
+  const uint32_t all_sure = t_sure & equal(u_low, round(radius - minus_u)) & equal(v_low, round(v + radius));
   store(t_low, verdicts.t);
   store(u_low, verdicts.u);
   store(v_low, verdicts.v);
-  verdicts.hit = sure & in_range;
-  verdicts.unsure = ~(miss | sure | (t_sure & ~in_range));
+  const uint32_t in_range = less_equal(t_low, in.tmax);
+  if constexpr (kSure) {
+    verdicts.hit = all_sure & in_range;
+    verdicts.unsure = ~all_sure;
+    return;
+  }
+  const Doubles weight_b = doubles(0.0) - minus_b, weight_a = sum + minus_b - weight_c;
+  const Doubles lowest = min(min(weight_a, weight_b), weight_c), highest = max(max(weight_a, weight_b), weight_c);
+  const Doubles below = doubles(0.0) - error;
+  const uint32_t miss = less(lowest, below) & less(error, highest);
+  const uint32_t inside = less(error, lowest) | less(highest, below);
+  const uint32_t usable = inside & less(sum_error * doubles(4.0), absolute(sum));
+  const uint32_t outside = usable & t_sure & ~(less_equal(in.tmin, t_low) & in_range);
+  verdicts.hit = usable & all_sure & ~outside;
+  verdicts.unsure = ~(miss | verdicts.hit | outside);
 }
 
 /// One ray against the triangles first ... first + kDoubles - 1 of a leaf.
+template <bool kSure>
 HWY_INLINE void confirm(const Ray& ray, const WideLeaf& leaf, float size, size_t first, Verdicts& verdicts) {
   const auto corner = [&](size_t c) {
     return DoubleVectors{load_doubles(leaf.corner(c, 0) + first), load_doubles(leaf.corner(c, 1) + first),
@@ -80,9 +86,9 @@ HWY_INLINE void confirm(const Ray& ray, const WideLeaf& leaf, float size, size_t
   const Vec3 d = ray.direction;
   const float length = std::max(std::max(std::abs(d.x), std::abs(d.y)), std::abs(d.z));
   const DoubleVectors a = corner(0);
-  confirm({doubles(d), a - doubles(ray.origin), corner(1) - a, corner(2) - a, doubles(length), doubles(size),
-           floats(ray.tmin), floats(ray.tmax)},
-          verdicts);
+  confirm<kSure>({doubles(d), a - doubles(ray.origin), corner(1) - a, corner(2) - a, doubles(length), doubles(size),
+                  floats(ray.tmin), floats(ray.tmax)},
+                 verdicts);
 }
 
 }  // namespace

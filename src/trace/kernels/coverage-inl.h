@@ -8,6 +8,7 @@
 #endif
 
 #include <array>
+#include <cmath>
 
 #include <hwy/cache_control.h>
 
@@ -41,13 +42,17 @@ HWY_INLINE bool confirm(const CoverageGrid& grid, uint32_t id, const Ray& ray, H
 template <class Asks>
 HWY_INLINE bool meets_any(const CoverageGrid& grid, const Waiting& w, const Asks& asks, uint64_t& tests) {
   const CoverageReference* reference = grid.references.data() + w.first;
-  for (uint32_t i = 0; i < w.count; ++i) {
-    if (reference[i].top < w.code) break;
-    const CoverageTriangle& triangle = grid.triangles[reference[i].triangle()];
-    const Verdict verdict = meet(triangle, w.x, w.y, w.s);
+  const CoverageTriangle* triangles = grid.triangles.data();
+  const ColumnLanes column(w.x, w.y);
+  const auto depth = hn::Set(FourTag(), w.s);
+  const uint32_t count = w.count, code = w.code;
+  for (uint32_t i = 0; i < count; ++i) {
+    if (reference[i].top < code) break;
+    const CoverageTriangle& triangle = triangles[reference[i].triangle()];
+    const Four lanes = column.at(triangle, depth);
     ++tests;
-    if (verdict.possible != 15) continue;
-    if (verdict.sure == 15 || asks(triangle.id)) return true;
+    if (lanes.at_least(-triangle.margin) != 15) continue;
+    if (lanes.above(triangle.margin) == 15 || asks(triangle.id)) return true;
   }
   for (const uint32_t id : grid.near_triangles)
     if (asks(id)) return true;
@@ -103,6 +108,9 @@ HWY_INLINE uint32_t first_hits(const CoverageGrid& grid, float x, float y, const
   };
   constexpr size_t kMostCandidates = 8;
   const CoverageReference* reference = grid.references.data() + list.first;
+  const CoverageTriangle* triangles = grid.triangles.data();
+  const CoverageTile& tile = grid.tiles[list.tile];
+  const ColumnLanes column(x, y);
   Candidate candidates[kMostCandidates];  // NOLINT: filled as far as size says
   size_t size = 0;
   float sure = -kInf;  // the first hit is not below this depth
@@ -113,20 +121,19 @@ HWY_INLINE uint32_t first_hits(const CoverageGrid& grid, float x, float y, const
     size = 0;
   };
   uint32_t i = 0;
-  for (; i < list.count; ++i) {
+  for (const uint32_t count = list.count; i < count; ++i) {
     if (reference[i].top < sure_code) break;
-    const CoverageTriangle& triangle = grid.triangles[reference[i].triangle()];
-    const Verdict verdict = meet(triangle, x, y, 0);
-    if ((verdict.possible & 7) != 7) continue;
+    const CoverageTriangle& triangle = triangles[reference[i].triangle()];
+    const Four lanes = column.at(triangle);
+    if ((lanes.at_least(-triangle.margin) & 7) != 7) continue;
     float depth = kInf, radius = 0;
-    if (triangle.ahead < 0) {  // else it has no plane to speak of
-      const float per_ahead = -1 / triangle.ahead;
-      depth = (triangle.a[3] * x + triangle.b[3] * y + triangle.c[3]) * per_ahead;
-      radius = 2 * triangle.margin * per_ahead;
+    if (triangle.per_ahead > 0) {  // else it has no plane to speak of
+      depth = (triangle.a[3] * x + triangle.b[3] * y + triangle.c[3]) * triangle.per_ahead;
+      radius = 2 * triangle.margin * triangle.per_ahead;
       if (depth + radius < sure) continue;
-      if ((verdict.sure & 7) == 7 && depth - radius > sure) {
+      if (depth - radius > sure && (lanes.above(triangle.margin) & 7) == 7) {
         sure = depth - radius;
-        sure_code = code_of(grid.tiles[list.tile], sure) - 2;
+        sure_code = code_of(tile, sure) - 2;
       }
     }
     if (size == kMostCandidates) tell_all();
@@ -165,17 +172,7 @@ struct NearestHit {
     ++counters.confirmations;
     if (confirmations.add(id, number)) finish();
   }
-  void finish() const {
-    confirmations.decide(
-        *grid.mesh, batch.rays,
-        [this](uint32_t number) {
-          hwy::Prefetch(batch.rays.points + number);
-          hwy::Prefetch(hits + number);
-        },
-        [this](uint32_t number, const Hit& hit) {
-          if (is_nearer(hit, hits[number])) hits[number] = hit;
-        });
-  }
+  void finish() const { confirmations.decide(*grid.mesh, hits); }
 };
 
 /// Answers waiting rays in order; what later ones will read is fetched meanwhile.
@@ -192,83 +189,156 @@ HWY_INLINE void answer_all(const CoverageGrid& grid, const Question& question, c
     }
     question.answer(waiting[i]);
   }
-  question.finish();
 }
 
-/// Counting sort by tile.
-inline void sort_by_tile(std::vector<Waiting>& waiting, size_t tiles, std::vector<uint32_t>& begin,
-                         std::vector<Waiting>& sorted) {
-  begin.assign(tiles + 1, 0);
-  for (const Waiting& w : waiting) ++begin[w.tile + 1];
+/// How a batch is asked.
+enum class Order : uint8_t {
+  kAsGiven,        // few rays, a small grid, or neighbours that follow each other
+  kWaitingByTile,  // cells tell most answers: only the others are sorted
+  kPointsByTile,   // all are sorted first
+};
+
+struct SortedPoint {
+  Vec3 point;
+  uint32_t number;
+};
+
+/// Scratch space for one batch.
+struct Asking {
+  Block block;             // NOLINT: filled as far as it is read
+  Waiting few[kBlock];     // NOLINT
+  uint32_t cells[kBlock];  // NOLINT
+  std::vector<SortedPoint> points;
+  std::vector<Waiting> waiting;
+};
+
+/// Where the groups of a counting sort begin, from counts that are one place up.
+inline void sum_up(std::vector<uint32_t>& begin) {
   for (size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
-  sorted.resize(waiting.size());
+}
+
+inline void sort_by_tile(std::vector<Waiting>& waiting, size_t tiles) {
+  std::vector<uint32_t> begin(tiles + 1);
+  for (const Waiting& w : waiting) ++begin[w.tile + 1];
+  sum_up(begin);
+  std::vector<Waiting> sorted(waiting.size());
   for (const Waiting& w : waiting) sorted[begin[w.tile]++] = w;
   waiting.swap(sorted);
 }
 
-/// Do most rays fall into the tile of the one before? Told from a few blocks.
-inline bool are_coherent(const CoverageGrid& grid, const ColumnBatch& batch, Block& block) {
-  constexpr size_t kProbes = 4;
-  size_t same = 0;
-  for (size_t probe = 0; probe < kProbes; ++probe) {
-    place(grid, batch, (batch.count - kBlock) / kProbes * probe, kBlock, block);
-    for (size_t i = 1; i < kBlock; ++i) same += block.tile[i] == block.tile[i - 1];
+/// Rays that have no tile come last.
+inline void sort_points(const CoverageGrid& grid, const ColumnBatch& batch, Asking& asking) {
+  const auto tiles = static_cast<uint32_t>(grid.tiles.size());
+  std::vector<uint32_t> begin(tiles + 2), tile_of(batch.count);
+  for (size_t first = 0; first < batch.count; first += kBlock) {
+    const size_t count = std::min<size_t>(kBlock, batch.count - first);
+    load(batch, first, count, asking.block);
+    place(grid, batch.rays.kind, count, asking.block);
+    for (size_t i = 0; i < count; ++i) {
+      tile_of[first + i] = std::min(asking.block.tile[i], tiles);
+      ++begin[tile_of[first + i] + 1];
+    }
   }
-  return 2 * same > kProbes * kBlock;
+  sum_up(begin);
+  asking.points.resize(batch.count);
+  for (size_t i = 0; i < batch.count; ++i) {
+    const uint32_t number = batch.number(i);
+    asking.points[begin[tile_of[i]]++] = {batch.rays.points[number], number};
+  }
+}
+
+HWY_INLINE void load_sorted(const SortedPoint* points, size_t count, Block& block) {
+  for (size_t i = 0; i < count; ++i) {
+    block.points[i] = points[i].point;
+    block.number[i] = points[i].number;
+  }
+}
+
+/// Answers what cells tell of a block, and lists the others in asking.few. Returns how many.
+template <class Question>
+HWY_INLINE size_t ask_cells(const CoverageGrid& grid, ColumnRays::Kind kind, size_t count, const Question& question,
+                            Asking& asking, std::vector<uint32_t>& rest) {
+  const Block& block = asking.block;
+  for (size_t i = 0; i < count; ++i) {
+    const uint32_t tile = block.tile[i];
+    if (tile >= kBeside) continue;
+    asking.cells[i] = cell_at(grid.tiles[tile], block.in_tile_x[i], block.in_tile_y[i]);
+    hwy::Prefetch(grid.cells.data() + asking.cells[i]);
+  }
+  size_t size = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const uint32_t tile = block.tile[i], number = block.number[i];
+    if (tile >= kBeside) {
+      if (tile == kBeside)
+        question.miss(number);
+      else
+        rest.push_back(number);
+      continue;
+    }
+    const CoverageCell* cell = &grid.cells[asking.cells[i]];
+    const bool is_far = kind == ColumnRays::Kind::kFrom;
+    const uint16_t code = is_far ? uint16_t{65535} : code_of(grid.tiles[tile], block.s[i]);
+    if (Question::kStartsOutside && !is_far && code <= cell->far) {
+      rest.push_back(number);
+      continue;
+    }
+    question.start(number);
+    if (question.decide(*cell, code, number)) continue;
+    asking.few[size++] = {block.x[i], block.y[i], block.s[i], cell->first, cell[1].first - cell->first, number,
+                          tile,       code,       0};
+  }
+  return size;
+}
+
+/// From a few blocks: do most rays fall into the tile of the one before, and do cells tell most answers?
+template <class Question>
+Order find_order(const CoverageGrid& grid, const ColumnBatch& batch, const Question& question, Asking& asking) {
+  constexpr size_t kProbes = 4;
+  if (!batch.sorted || batch.count <= 2 * kProbes * kBlock) return Order::kAsGiven;
+  size_t same = 0, open = 0;
+  std::vector<uint32_t> unwanted;
+  for (size_t probe = 0; probe < kProbes; ++probe) {
+    load(batch, (batch.count - kBlock) / kProbes * probe, kBlock, asking.block);
+    place(grid, batch.rays.kind, kBlock, asking.block);
+    for (size_t i = 1; i < kBlock; ++i) same += asking.block.tile[i] == asking.block.tile[i - 1];
+    open += ask_cells(grid, batch.rays.kind, kBlock, question, asking, unwanted);  // the answers are right
+  }
+  if (2 * same > kProbes * kBlock) return Order::kAsGiven;
+  return 2 * open < kProbes * kBlock ? Order::kWaitingByTile : Order::kPointsByTile;
 }
 
 template <class Question>
-void ask(const CoverageGrid& grid, const ColumnBatch& batch, const Question& question, std::vector<uint32_t>& rest,
-         CoverageCounters& counters) {
-  Block block;  // NOLINT: filled as far as it is read
-  std::vector<Waiting> waiting;
-  const bool sorts = batch.sorted && batch.count > 4 * kBlock && !are_coherent(grid, batch, block);
-  if (sorts) waiting.reserve(batch.count);
-  std::array<Waiting, kBlock> few;     // NOLINT
-  std::array<uint32_t, kBlock> cells;  // NOLINT
-  counters.rays += batch.count;
+void ask(const CoverageGrid& grid, const ColumnBatch& batch, const Question& question, std::vector<uint32_t>& rest) {
+  Asking asking;
+  const Order order = find_order(grid, batch, question, asking);
+  if (order == Order::kPointsByTile) sort_points(grid, batch, asking);
+  if (order == Order::kWaitingByTile) asking.waiting.reserve(batch.count);
+  const size_t rest_begin = rest.size();
   for (size_t begin = 0; begin < batch.count; begin += kBlock) {
     const size_t count = std::min<size_t>(kBlock, batch.count - begin);
-    place(grid, batch, begin, count, block);
-    for (size_t i = 0; i < count; ++i) {
-      const uint32_t tile = block.tile[i];
-      if (tile >= kBeside) continue;
-      cells[i] = cell_at(grid.tiles[tile], block.in_tile_x[i], block.in_tile_y[i]);
-      hwy::Prefetch(grid.cells.data() + cells[i]);
-    }
-    size_t size = 0;
-    for (size_t i = 0; i < count; ++i) {
-      const uint32_t tile = block.tile[i], number = block.number[i];
-      if (tile == kOutside) {
-        rest.push_back(number);
-        continue;
-      }
-      if (tile == kBeside) {
-        question.miss(number);
-        continue;
-      }
-      const CoverageCell& cell = grid.cells[cells[i]];
-      const bool is_far = batch.rays.kind == ColumnRays::Kind::kFrom;
-      const uint16_t code = is_far ? uint16_t{65535} : code_of(grid.tiles[tile], block.s[i]);
-      if (Question::kStartsOutside && !is_far && code <= cell.far) {
-        rest.push_back(number);
-        continue;
-      }
-      question.start(number);
-      if (question.decide(cell, code, number)) continue;
-      few[size++] = {block.x[i], block.y[i], block.s[i], cell.first, (&cell)[1].first - cell.first,
-                     number,     tile,       code,       0};
-    }
-    if (sorts)
-      waiting.insert(waiting.end(), few.begin(), few.begin() + static_cast<std::ptrdiff_t>(size));
+    if (order == Order::kPointsByTile)
+      load_sorted(asking.points.data() + begin, count, asking.block);
     else
-      answer_all(grid, question, few.data(), size);
+      load(batch, begin, count, asking.block);
+    place(grid, batch.rays.kind, count, asking.block);
+    const size_t size = ask_cells(grid, batch.rays.kind, count, question, asking, rest);
+    if (order == Order::kWaitingByTile)
+      asking.waiting.insert(asking.waiting.end(), asking.few, asking.few + size);
+    else
+      answer_all(grid, question, asking.few, size);
   }
-  if (!sorts) return;
-  std::vector<uint32_t> tiles;
-  std::vector<Waiting> sorted;
-  sort_by_tile(waiting, grid.tiles.size(), tiles, sorted);
-  answer_all(grid, question, waiting.data(), waiting.size());
+  if (order == Order::kPointsByTile) std::sort(rest.begin() + static_cast<std::ptrdiff_t>(rest_begin), rest.end());
+  if (order == Order::kWaitingByTile) {
+    sort_by_tile(asking.waiting, grid.tiles.size());
+    answer_all(grid, question, asking.waiting.data(), asking.waiting.size());
+  }
+  question.finish();
+}
+
+/// Is nothing where the column is?
+inline bool is_beside(const CoverageGrid& grid, const SingleColumn& c) {
+  const bool inside = c.x >= grid.x_lo && c.x <= grid.x_hi && c.y >= grid.y_lo && c.y <= grid.y_hi;
+  return grid.is_free_beside && !inside && std::abs(c.x) <= 0x1p60f && std::abs(c.y) <= 0x1p60f;
 }
 
 /// The cell of one column; false for columns that are not the grid's.
@@ -284,6 +354,7 @@ inline bool find_cell(const CoverageGrid& grid, const SingleColumn& c, uint32_t&
 
 inline std::optional<bool> single_any(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray) {
   uint32_t tile = 0, number = 0;
+  if (is_beside(grid, column)) return false;
   if (!find_cell(grid, column, tile, number)) return {};
   const CoverageCell* cell = &grid.cells[number];
   if (code_of(grid.tiles[tile], column.end) <= cell->far) return {};
@@ -303,6 +374,7 @@ inline std::optional<bool> single_any(const CoverageGrid& grid, const SingleColu
 
 inline std::optional<Hit> single_nearest(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray) {
   uint32_t tile = 0, number = 0;
+  if (is_beside(grid, column)) return Hit{};
   if (!find_cell(grid, column, tile, number)) return {};
   const CoverageCell* cell = &grid.cells[number];
   if (code_of(grid.tiles[tile], column.s) <= cell->far && column.s < kInf) return {};

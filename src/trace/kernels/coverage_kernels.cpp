@@ -18,16 +18,27 @@ namespace {
 void any(const CoverageGrid& grid, const ColumnBatch& batch, uint8_t* flags, std::vector<uint32_t>& rest,
          CoverageCounters& counters) {
   CoverageCounters counts;
-  ask(grid, batch, AnyHit{grid, batch, flags, counts}, rest, counts);
+  counts.rays = batch.count;
+  ask(grid, batch, AnyHit{grid, batch, flags, counts}, rest);
   counters.add(counts);
 }
 
 void nearest(const CoverageGrid& grid, const ColumnBatch& batch, Hit* hits, std::vector<uint32_t>& rest,
              CoverageCounters& counters) {
   CoverageCounters counts;
-  Confirmations confirmations;
-  ask(grid, batch, NearestHit{grid, batch, hits, counts, confirmations}, rest, counts);
+  counts.rays = batch.count;
+  Confirmations confirmations(batch.rays);
+  ask(grid, batch, NearestHit{grid, batch, hits, counts, confirmations}, rest);
   counters.add(counts);
+}
+
+void choose(const EyeGrids& eye, bool are_directions, const Vec3* points, size_t count, uint8_t* chosen) {
+  Block block;  // NOLINT: filled as far as it is read
+  for (size_t begin = 0; begin < count; begin += kBlock) {
+    const size_t size = std::min(kBlock, count - begin);
+    std::copy(points + begin, points + begin + size, block.points);
+    choose_grids(eye, are_directions, size, block, chosen + begin);
+  }
 }
 
 std::optional<bool> any_of_one(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray) {
@@ -41,7 +52,7 @@ std::optional<Hit> nearest_of_one(const CoverageGrid& grid, const SingleColumn& 
 }  // namespace
 
 extern const CoverageKernels kCoverageTable;
-const CoverageKernels kCoverageTable{any_of_one, nearest_of_one, any, nearest};
+const CoverageKernels kCoverageTable{choose, any_of_one, nearest_of_one, any, nearest};
 
 }  // namespace raygrain::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -34,6 +34,8 @@ struct ColumnBatch {
   const uint32_t* subset = nullptr;  // null: first, first + 1, ...
   uint32_t first = 0, count = 0;
   bool sorted = false;
+
+  uint32_t number(size_t i) const { return subset != nullptr ? subset[i] : first + static_cast<uint32_t>(i); }
 };
 
 /// One ray as a column: from depth s on, up to depth `end` or from it down.
@@ -41,7 +43,17 @@ struct SingleColumn {
   float x, y, s, end;
 };
 
+/// Several grids about one eye.
+struct EyeGrids {
+  const CoverageGrid* const* grids = nullptr;
+  uint32_t count = 0;
+};
+
+inline constexpr uint8_t kNoGrid = 255;
+
 struct CoverageKernels {
+  /// The first grid whose window holds each point (or direction), or kNoGrid.
+  void (*choose)(const EyeGrids& eye, bool are_directions, const Vec3* points, size_t count, uint8_t* chosen);
   std::optional<bool> (*any_of_one)(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray);
   std::optional<Hit> (*nearest_of_one)(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray);
   void (*any)(const CoverageGrid& grid, const ColumnBatch& batch, uint8_t* flags, std::vector<uint32_t>& rest,

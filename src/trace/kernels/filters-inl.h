@@ -31,7 +31,7 @@ struct BoxFilter {
   Eight earliest;
   size_t near_side[3], far_side[3];  // in floats from the start of a node
 
-  /// False if floats do not serve for this ray.
+  /// False if floats do not serve for this ray, or if its origin or direction is not finite or its direction zero.
   HWY_INLINE bool prepare(const WideTree& tree, const Ray& ray, float skip_before) {
     const float origin[3] = {relative(ray.origin.x, tree.center.x), relative(ray.origin.y, tree.center.y),
                              relative(ray.origin.z, tree.center.z)};
@@ -39,8 +39,11 @@ struct BoxFilter {
     const float distance = std::max(std::max(std::abs(origin[0]), std::abs(origin[1])), std::abs(origin[2]));
     const float length = std::max(std::max(std::abs(direction[0]), std::abs(direction[1])), std::abs(direction[2]));
     const float size = tree.reach + distance;
-    if (!(size >= kLeast && size <= kGreatest && length >= kLeast && length <= kGreatest)) return false;
-    if (!(distance <= kFarthest * tree.reach)) return false;
+    // A maximum may overlook a NaN, a sum does not.
+    const float sum = ((origin[0] + origin[1]) + (direction[0] + direction[1])) + (origin[2] + direction[2]);
+    const bool is_served = (size >= kLeast) & (size <= kGreatest) & (length >= kLeast) & (length <= kGreatest) &
+                           (distance <= kFarthest * tree.reach) & (sum == sum);
+    if (!is_served) return false;
     const float padding = 8 * kRoundoff * size, least = 0x1p-40f * length;
     for (size_t axis = 0; axis < 3; ++axis) {
       // Without branches: signs are hard to predict.

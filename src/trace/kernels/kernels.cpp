@@ -36,20 +36,14 @@ bool any_counted(const WideTree& tree, const Ray& ray, const SearchOptions& opti
                        : any<true, false>(tree, ray, options.skip_before, &counters);
 }
 
-bool can_hit(const Ray& ray) {
-  return is_valid(ray) && ray.tmin <= ray.tmax;
-}
-
 void nearest_of_many(const WideTree& tree, const Ray* rays, Hit* hits, size_t count) {
   if constexpr (kHasStreams) return NearestStream(tree, rays, hits, count).run();
-  for (size_t i = 0; i < count; ++i)
-    hits[i] = can_hit(rays[i]) ? nearest<false, true>(tree, rays[i], {}, -kInf, nullptr) : Hit{};
+  for (size_t i = 0; i < count; ++i) hits[i] = nearest<false, true>(tree, rays[i], {}, -kInf, nullptr);
 }
 
 void any_of_many(const WideTree& tree, const Ray* rays, uint8_t* flags, size_t count) {
   if constexpr (kHasStreams) return AnyStream(tree, rays, flags, count).run();
-  for (size_t i = 0; i < count; ++i)
-    flags[i] = can_hit(rays[i]) && any<false, true>(tree, rays[i], -kInf, nullptr) ? 1 : 0;
+  for (size_t i = 0; i < count; ++i) flags[i] = any<false, true>(tree, rays[i], -kInf, nullptr) ? 1 : 0;
 }
 
 }  // namespace

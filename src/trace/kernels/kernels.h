@@ -7,14 +7,14 @@
 
 namespace raygrain {
 
-/// One instruction set's searches. Rays are valid with tmin <= tmax, and the tree is not empty.
+/// One instruction set's searches. Any rays; the tree is not empty.
 struct Kernels {
   Hit (*nearest)(const WideTree& tree, const Ray& ray, Hit known, float skip_before);
   bool (*any)(const WideTree& tree, const Ray& ray, float skip_before);
   Hit (*nearest_counted)(const WideTree& tree, const Ray& ray, Hit known, const SearchOptions& options,
                          TraceCounters& counters);
   bool (*any_counted)(const WideTree& tree, const Ray& ray, const SearchOptions& options, TraceCounters& counters);
-  void (*nearest_of_many)(const WideTree& tree, const Ray* rays, Hit* hits, size_t count);  // any rays
+  void (*nearest_of_many)(const WideTree& tree, const Ray* rays, Hit* hits, size_t count);
   void (*any_of_many)(const WideTree& tree, const Ray* rays, uint8_t* flags, size_t count);
 };
 

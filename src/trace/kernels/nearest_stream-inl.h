@@ -38,9 +38,9 @@ class Confirmations {
     const DoubleVectors direction = load(kDirection), a = load(kCorners);
     const Doubles length = max(max(absolute(direction.x), absolute(direction.y)), absolute(direction.z));
     Verdicts verdicts;
-    confirm({direction, a - load(kOrigin), load(kCorners + 3) - a, load(kCorners + 6) - a, length,
-             load_doubles(values_[kSize]), load_floats(values_[kMin]), load_floats(values_[kMax])},
-            verdicts);
+    confirm<false>({direction, a - load(kOrigin), load(kCorners + 3) - a, load(kCorners + 6) - a, length,
+                    load_doubles(values_[kSize]), load_floats(values_[kMin]), load_floats(values_[kMax])},
+                   verdicts);
     for (size_t i = 0; i < count_; ++i) {
       Hit hit{verdicts.t[i], verdicts.u[i], verdicts.v[i], triangle_[i]};
       const bool is_hit = (verdicts.unsure >> i & 1) != 0 ? decide_alone(i, hit) : (verdicts.hit >> i & 1) != 0;
@@ -105,9 +105,9 @@ class NearestStream {
       const Ray& ray = rays_[next_];
       s.index = next_++;
       hits_[s.index] = {};
-      if (!is_valid(ray) || !(ray.tmin <= ray.tmax)) continue;
-      if (!s.boxes.prepare(tree_, ray, -kInf)) {
-        hits_[s.index] = nearest_carefully(tree_, ray, {}, {}, nullptr);
+      if (!(ray.tmin <= ray.tmax)) continue;
+      if (!s.boxes.prepare(tree_, ray, -kInf)) [[unlikely]] {
+        if (is_valid(ray)) hits_[s.index] = nearest_carefully(tree_, ray, {}, {}, nullptr);
         continue;
       }
       s.triangles.prepare(ray);

@@ -9,6 +9,7 @@
 #endif
 
 #include <algorithm>
+#include <array>
 
 #include <hwy/cache_control.h>
 #include <hwy/highway.h>
@@ -16,13 +17,15 @@
 #include "raygrain/mesh.h"
 #include "raygrain/triangle.h"
 
+#include "trace/kernels/coverage_kernels.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace raygrain::HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-using DoubleTag = hn::CappedTag<double, 8>;
+using DoubleTag = hn::CappedTag<double, 4>;
 using HalfTag = hn::Rebind<float, DoubleTag>;
 using Doubles = hn::Vec<DoubleTag>;
 
@@ -44,46 +47,45 @@ HWY_INLINE Doubles largest_component(const DoubleVectors& a) {
   return hn::Max(hn::Max(hn::Abs(a.x), hn::Abs(a.y)), hn::Abs(a.z));
 }
 
-/// Pairs of a ray (tmin = 0) and a triangle that wait to be decided together. What they need from memory is fetched
-/// for all of them before the first is decided.
+/// Pairs of a ray (tmin = 0, tmax infinite) and a triangle that wait to be decided together. What they need from memory
+/// is fetched for all of them before the first is decided.
 class Confirmations {
  public:
+  /// Rays that share their start or their direction.
+  explicit Confirmations(const ColumnRays& rays) : rays_(rays) {
+    common_row_ = rays.kind == ColumnRays::Kind::kFrom ? 9 : 12;
+    for (size_t lane = 0; lane < kTogether; ++lane) put(common_row_, lane, rays.common);
+  }
+
   /// True when it is full: decide() then, before the next.
   HWY_INLINE bool add(uint32_t triangle, uint32_t ray) {
     queue_[queued_++] = {triangle, ray};
     return queued_ == kQueue;
   }
 
-  /// Calls tell(ray number, hit) for each hit, in the order of coming. `rays[number]` is a ray; fetch(number) may
-  /// prefetch what rays[] and tell() read.
-  template <class Rays, class Fetch, class Tell>
-  void decide(const TriangleMesh& mesh, const Rays& rays, const Fetch& fetch, const Tell& tell) {
+  /// Merges the hits into hits[ray].
+  void decide(const TriangleMesh& mesh, Hit* hits) {
+    const std::array<uint32_t, 3>* triangles = mesh.triangles.data();
+    const Vec3* vertices = mesh.vertices.data();
     for (size_t i = 0; i < queued_; ++i) {
-      hwy::Prefetch(mesh.triangles.data() + queue_[i].triangle);
-      fetch(queue_[i].ray);
+      hwy::Prefetch(triangles + queue_[i].triangle);
+      hwy::Prefetch(rays_.points + queue_[i].ray);
+      hwy::Prefetch(hits + queue_[i].ray);
     }
     for (size_t i = 0; i < queued_; ++i)
-      for (const uint32_t corner : mesh.triangles[queue_[i].triangle]) hwy::Prefetch(mesh.vertices.data() + corner);
+      for (const uint32_t corner : triangles[queue_[i].triangle]) hwy::Prefetch(vertices + corner);
+    const size_t own_row = 21 - common_row_;
     for (size_t i = 0; i < queued_; i += kTogether) {
       const size_t count = std::min(kTogether, queued_ - i);
       for (size_t lane = 0; lane < kTogether; ++lane) {
         const Pair pair = queue_[i + std::min(lane, count - 1)];
-        const Ray ray = rays[pair.ray];
-        const auto& corners = mesh.triangles[pair.triangle];
-        for (size_t c = 0; c < 3; ++c) put(3 * c, lane, mesh.vertices[corners[c]]);
-        put(9, lane, ray.origin);
-        put(12, lane, ray.direction);
-        numbers_[15][lane] = ray.tmax;
+        const auto& corners = triangles[pair.triangle];
+        put(0, lane, vertices[corners[0]]);
+        put(3, lane, vertices[corners[1]]);
+        put(6, lane, vertices[corners[2]]);
+        put(own_row, lane, rays_.points[pair.ray]);
       }
-      uint32_t sure_hits = 0, sure_misses = 0;
-      for (size_t lane = 0; lane < count; lane += hn::MaxLanes(DoubleTag())) decide_part(lane, sure_hits, sure_misses);
-      for (size_t lane = 0; lane < count; ++lane) {
-        if ((sure_misses >> lane & 1) != 0) continue;
-        const Pair pair = queue_[i + lane];
-        Hit hit{t_[lane], u_[lane], v_[lane], pair.triangle};
-        if ((sure_hits >> lane & 1) == 0 && !ask(lane, hit)) continue;
-        tell(pair.ray, hit);
-      }
+      decide_together(queue_ + i, count, hits);
     }
     queued_ = 0;
   }
@@ -93,6 +95,18 @@ class Confirmations {
   struct Pair {
     uint32_t triangle, ray;
   };
+
+  HWY_INLINE void decide_together(const Pair* pairs, size_t count, Hit* hits) {
+    uint32_t sure_hits = 0, sure_misses = 0;
+    for (size_t lane = 0; lane < count; lane += hn::MaxLanes(DoubleTag())) decide_part(lane, sure_hits, sure_misses);
+    for (size_t lane = 0; lane < count; ++lane) {
+      if ((sure_misses >> lane & 1) != 0) continue;
+      Hit hit{t_[lane], u_[lane], v_[lane], pairs[lane].triangle};
+      if ((sure_hits >> lane & 1) == 0 && !ask(lane, hit)) continue;
+      Hit& best = hits[pairs[lane].ray];
+      if (is_nearer(hit, best)) best = hit;
+    }
+  }
 
   HWY_INLINE void put(size_t row, size_t lane, Vec3 a) {
     numbers_[row][lane] = a.x;
@@ -110,8 +124,7 @@ class Confirmations {
             hn::PromoteTo(d, hn::Load(f, numbers_[row + 2] + lane))};
   }
   bool ask(size_t i, Hit& hit) const {
-    return intersect_triangle({vector(9, i), vector(12, i), 0, numbers_[15][i]}, vector(0, i), vector(3, i),
-                              vector(6, i), hit);
+    return intersect_triangle({vector(9, i), vector(12, i), 0, kInf}, vector(0, i), vector(3, i), vector(6, i), hit);
   }
 
   /// As round_quotient: false lanes where two floats come into question.
@@ -154,10 +167,8 @@ class Confirmations {
     sure = hn::And(sure, round(dot(to_a, normal), numerator_error, sum_error, inverse, t_ + lane));
     sure = hn::And(sure, round(weight_b, error, sum_error, inverse, u_ + lane));
     sure = hn::And(sure, round(weight_c, error, sum_error, inverse, v_ + lane));
-    const HalfTag f;
-    const Doubles t = hn::PromoteTo(d, hn::Load(f, t_ + lane));
-    const auto in_range =
-        hn::And(hn::Ge(t, hn::Zero(d)), hn::Le(t, hn::PromoteTo(d, hn::Load(f, numbers_[15] + lane))));
+    const Doubles t = hn::PromoteTo(d, hn::Load(HalfTag(), t_ + lane));
+    const auto in_range = hn::Ge(t, hn::Zero(d));
     sure_hits |= bits(hn::And(sure, in_range)) << lane;
     sure_misses |= bits(hn::Or(misses, hn::AndNot(in_range, sure))) << lane;
   }
@@ -167,6 +178,8 @@ class Confirmations {
     return stored[0];
   }
 
+  const ColumnRays& rays_;
+  size_t common_row_;
   Pair queue_[kQueue];  // NOLINT: filled as far as queued_
   size_t queued_ = 0;
   alignas(64) float numbers_[16][kTogether];                      // NOLINT: corners, origin, direction, tmax
