@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "raygrain/accelerator.h"
 #include "raygrain/analyze.h"
 
 #include "base/timer.h"
@@ -15,17 +16,9 @@ const char* name(Quality quality) {
 }
 
 Bvh build_preset(const TriangleMesh& mesh, Quality quality, unsigned threads) {
-  const std::vector<Bounds> bounds = triangle_bounds(mesh);
-  std::vector<Vec3> centers(bounds.size());  // of the boxes: better trees than with the triangles' barycentres
-  std::ranges::transform(bounds, centers.begin(), [](const Bounds& box) { return center(box); });
-  BuildOptions options;
-  options.parameters.bins = 32;
-  options.parameters.max_levels = 64;
-  options.threads = threads;
-  options.clip = [&](uint32_t triangle, const Bounds& box) { return clip_triangle_bounds(mesh, triangle, box); };
-  if (quality == Quality::kFast) return build_subset(bounds, centers, options);
-  if (quality == Quality::kBalanced) return build_binned(bounds, centers, options);
-  return build_spatial(bounds, centers, options);
+  Recipe recipe{"SAH", "ALL", "", {}};
+  set_quality(recipe, quality);
+  return build_global_tree(mesh, recipe, default_registry(), nullptr, {}, {threads, {}});
 }
 
 namespace {

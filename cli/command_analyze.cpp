@@ -94,8 +94,8 @@ int analyze_tree(const Options& options) {
 
   output.save_json(
       rows_json(scene.name, scene.mesh.triangle_count(), options.tree.seed, options.tree.common, {&row, 1}));
-  output.print(
-      fmt::format("{}, {}{}\n{}", scene.name, row.name, row.area.empty() ? "" : " for " + row.area, row_listing(row)));
+  output.print(fmt::format("{}, {}{}\n{}", scene.name, row.name, row.area.empty() ? "" : " for " + row.area,
+                           row_listing(row) + tree.peak_line()));
   if (!options.nodes.empty()) output.note("Written:\n  " + options.nodes + "\n");
   return kSuccess;
 }
@@ -105,6 +105,7 @@ int analyze_tree(const Options& options) {
 Action declare_analyze(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   add_tree_options(arguments, options->tree);
+  arguments.file("--tree", "FILE.rgt", options->tree.file, "Analyze this built tree in place of a new one");
   arguments.whole("--rays", options->rays, {1, kMostRays}, "Rays of the area to trace");
   arguments.file("--nodes", "FILE.csv", options->nodes, "Write a row for each node");
   add_common(arguments, options->tree.common);

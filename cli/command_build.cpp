@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/one_tree.h"
 #include "cli/rows.h"
+#include "cli/tree_file.h"
 
 namespace raygrain::cli {
 
@@ -30,11 +31,14 @@ int build(const Options& options) {
   const ReportRow row = tree.row();
   const std::string json =
       rows_json(scene.name, scene.mesh.triangle_count(), options.tree.seed, options.tree.common, {&row, 1});
-  save_tree_json(*tree.tree, json, options.output);
+  if (is_tree_file(options.output))
+    save_tree(*tree.tree, options.output);
+  else
+    save_tree_json(*tree.tree, json, options.output);
   progress.erase();
   output.save_json(json);
-  output.print(
-      fmt::format("{}, {}{}\n{}", scene.name, row.name, row.area.empty() ? "" : " for " + row.area, row_listing(row)));
+  output.print(fmt::format("{}, {}{}\n{}", scene.name, row.name, row.area.empty() ? "" : " for " + row.area,
+                           row_listing(row) + tree.peak_line()));
   output.note("Written:\n  " + options.output + "\n");
   return kSuccess;
 }
@@ -44,7 +48,8 @@ int build(const Options& options) {
 Action declare_build(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   add_tree_options(arguments, options->tree);
-  arguments.file("-o,--output", "TREE.json", options->output, "Where to write the tree");
+  arguments.file("-o,--output", "FILE", options->output,
+                 "Where to write the tree: TREE.rgt for --tree and refit, else JSON");
   arguments.require("--output");
   add_common(arguments, options->tree.common);
   return [options] { return build(*options); };

@@ -18,6 +18,7 @@
 #include "cli/areas.h"
 #include "cli/commands.h"
 #include "cli/open_scene.h"
+#include "cli/tree_file.h"
 #include "cli/values.h"
 
 namespace raygrain::cli {
@@ -33,7 +34,7 @@ struct Options {
   AreaOptions areas;
   std::string scene, rays, set, output;
   std::string local = "PAH+ALL@binned", global = kDefaultGlobal;
-  std::string quality, traversal = "wide";
+  std::string quality, tree, traversal = "wide";
   bool verify = false, reinsert = false;
 };
 
@@ -162,9 +163,25 @@ std::string trace_text(const Options& options, const Scene& scene, size_t areas,
 
 void check_options(const Options& options) {
   check_area_options(options.areas);
+  if (!options.tree.empty() && (!options.quality.empty() || options.reinsert || options.global != kDefaultGlobal))
+    fail_usage("--tree", "cannot be combined with --global, --quality or --reinsert",
+               "They say how a new tree is built");
   if (options.rays.empty() == options.set.empty())
     fail_usage("--rays", options.rays.empty() ? "no rays are given" : "cannot be combined with --set",
                "Give --rays FILE.csv (columns ox,oy,oz,dx,dy,dz[,tmin,tmax]) or --set NAME of a scene.json");
+}
+
+/// With the global tree of a file, where one is given.
+Accelerator make_accelerator(const Options& options, const Scene& scene, const std::vector<InfluenceArea>& areas,
+                             const AcceleratorOptions& build) {
+  if (options.tree.empty()) return Accelerator(scene.mesh, areas, build);
+  auto global = std::make_shared<const Bvh>(load_tree_for(scene.mesh, options.tree));
+  std::vector<LocalTree> locals;
+  for (const InfluenceArea& area : areas)
+    locals.push_back(
+        build_local_tree(scene.mesh, area, build.local, build.registry, {}, build.samples(&area), {build.threads, {}}));
+  return Accelerator(std::make_shared<const TriangleMesh>(scene.mesh), std::move(locals), std::move(global),
+                     build.top_level, build.traversal);
 }
 
 Traced trace_and_verify(const Options& options, const Scene& scene, const std::vector<InfluenceArea>& areas,
@@ -176,7 +193,7 @@ Traced trace_and_verify(const Options& options, const Scene& scene, const std::v
     progress.show("build the trees", built * done);
     return true;
   };
-  const Accelerator accelerator(scene.mesh, areas, build);
+  const Accelerator accelerator = make_accelerator(options, scene, areas, build);
   Traced traced = trace_all(accelerator, rays, threads,
                             [&](double done) { progress.show("trace rays", built + done * (traced_share - built)); });
   if (!options.verify) return traced;
@@ -223,6 +240,7 @@ Action declare_trace(Arguments& arguments) {
   arguments.text("--quality", "NAME", options->quality,
                  "Of that tree: fast, balanced or best, in place of its builder");
   arguments.flag("--reinsert", options->reinsert, "Improve that tree by reinsertion, under its measure");
+  arguments.file("--tree", "FILE.rgt", options->tree, "A built tree of the whole scene in place of that tree");
   arguments.text("--traversal", "NAME", options->traversal, "Form of the trees: wide, or binary (slower) [wide]");
   arguments.flag("--verify", options->verify, "Check every hit against brute force (slow)");
   add_common(arguments, options->common);

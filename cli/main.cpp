@@ -33,9 +33,10 @@ struct Command {
 constexpr Command kCommands[] = {
     {"compare", "Compare trees of several recipes for the same areas and rays: the main job", declare_compare},
     {"study", "Run the paper's evaluation, or a grid of experiments of one's own", declare_study},
-    {"build", "Build one tree and write it as JSON", declare_build},
+    {"build", "Build one tree and write it as a tree file or as JSON", declare_build},
     {"analyze", "Print all metrics of one tree", declare_analyze},
     {"trace", "Find the nearest hits of rays from a file", declare_trace},
+    {"refit", "Fit a tree file to vertices that moved", declare_refit},
     {"report", "Draw the results of studies as a page of charts", declare_report},
     {"recipes", "List the measures, orientations and builders that recipes are made of", declare_recipes},
 };

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "raygrain/analyze.h"
 #include "raygrain/compare.h"
 #include "raygrain/rays.h"
@@ -9,6 +11,7 @@
 
 #include "base/nearest_name.h"
 #include "base/timer.h"
+#include "cli/tree_file.h"
 #include "cli/values.h"
 
 namespace raygrain::cli {
@@ -39,6 +42,14 @@ std::optional<InfluenceArea> pick_area(const TreeOptions& options, const Scene& 
     if (area.name == options.area) return area;
   if (areas.empty()) fail_without_areas(options.areas, scene, options.scene);
   fail_usage("--area", "there is no area '" + options.area + "'", known_names(areas, options.area));
+}
+
+/// A tree file in place of a new tree.
+void load_one_tree(OneTree& result, const TriangleMesh& mesh, const std::string& file) {
+  std::vector<uint32_t> members;
+  if (result.area) members = area_members(mesh, AreaGeometry(*result.area));
+  result.tree = std::make_shared<const Bvh>(load_tree_for(mesh, file, members));
+  result.log.nodes.assign(result.tree->nodes.size(), {});
 }
 
 /// The log says nothing about nodes that reinsertion moved.
@@ -82,11 +93,19 @@ ReportRow OneTree::row() const {
   return result;
 }
 
+std::string OneTree::peak_line() const {
+  if (log.peak_bytes == 0) return "";
+  return fmt::format("  {:<28} {:>8.1f} MiB  Most memory that the builder held at once, the tree included.\n",
+                     "build_peak_memory", static_cast<double>(log.peak_bytes) / (1024 * 1024));
+}
+
 Recipe check_tree_options(const TreeOptions& options, const Registry& registry) {
   check_area_options(options.areas);
   if (options.whole && !options.area.empty())
     fail_usage("--whole", "cannot be combined with --area", "Leave one of them out");
   Recipe recipe = parse_recipe(options.recipe, registry);
+  if (!options.file.empty() && (!options.quality.empty() || options.reinsert))
+    fail_usage("--tree", "cannot be combined with --quality or --reinsert", "They say how a new tree is built");
   if (options.quality.empty()) return recipe;
   if (options.recipe.find('@') != std::string::npos)
     fail_usage("--quality", "cannot be combined with a recipe that names its builder", "Leave one of them out");
@@ -103,6 +122,10 @@ OneTree build_one_tree(const TreeOptions& options, const Scene& scene, const std
   result.area = pick_area(options, scene, areas, samples || needs_area(result.recipe, result.registry));
   if (samples) result.samples = sample_rays(*result.area, options.seed);
 
+  if (!options.file.empty()) {
+    load_one_tree(result, scene.mesh, options.file);
+    return result;
+  }
   const std::string step = "build " + recipe_name(result.recipe);
   const BuildRun run{options.common.thread_count(), [&](double done) {
                        progress.show(step, kBuildShare * done);

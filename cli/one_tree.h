@@ -23,6 +23,7 @@ struct TreeOptions {
   bool whole = false;               // of the whole scene, whatever areas there are
   std::string quality;              // replaces the recipe's builder; or empty
   bool reinsert = false;
+  std::string file;  // of a built tree, to be taken instead of a new one; or empty
   uint64_t seed = 1;
 };
 void add_tree_options(Arguments& arguments, TreeOptions& options);
@@ -40,6 +41,8 @@ struct OneTree {
   RayMeasure measure() const;
   /// Everything that is known without tracing rays.
   ReportRow row() const;
+  /// The memory that the build took, as a line of text; empty where the builder does not say.
+  std::string peak_line() const;
 };
 
 /// Checks what can be checked before the scene is loaded.

@@ -74,7 +74,8 @@ struct Recipe {
   bool for_wide = false;
 };
 
-/// Builds for a quality: its builder, for_wide.
+/// Builds for a quality: its builder, for_wide; and for kFast only the longest axis of each node, as Wald (2007) does,
+/// where the recipe says ALL: two thirds of the work of a split are the other axes.
 void set_quality(Recipe& recipe, Quality quality);
 
 /// "MEASURE+ORIENTATION", with "@BUILDER" unless it is `paper`.

@@ -28,9 +28,10 @@ export function matrixParts(panel: Panel, options: SpecOptions): { height: numbe
         orient: 'top',
         domain: false,
         ticks: false,
-        labelAngle: roomy ? 0 : -40,
+        labelAngle: roomy ? 0 : -60,
         labelOffset: roomy ? 0 : 8,
         labelLimit: 160,
+        ...(options.narrow ? { labelFontSize: 9 } : {}),
       },
     },
     y: {
@@ -39,7 +40,7 @@ export function matrixParts(panel: Panel, options: SpecOptions): { height: numbe
       title: null,
       sort: names,
       scale: { domain: names, padding: 0.04 },
-      axis: { domain: false, ticks: false, labelLimit: options.narrow ? 120 : 260 },
+      axis: { domain: false, ticks: false, labelLimit: 260, ...(options.narrow ? { labelFontSize: 9 } : {}) },
     },
   };
   const range = [LESS, '#ffffff', MORE];
@@ -66,7 +67,10 @@ export function matrixParts(panel: Panel, options: SpecOptions): { height: numbe
         name: 'numbers',
         data: { values: rows },
         mark: { type: 'text', fontSize: options.narrow ? 9 : 11.5, color: '#111418' },
-        encoding: { ...position, text: { field: 'value' } },
+        encoding: {
+          ...position,
+          text: options.narrow ? { field: 'y', type: 'quantitative', format: '.2f' } : { field: 'value' },
+        },
       },
     ],
   };

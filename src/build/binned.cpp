@@ -51,7 +51,10 @@ class BinnedBuilder {
     }
     if (!best && options_.split_inseparable)
       best = builder::split_inseparable(input_, prims, strategy_, node.context, options_, bins_[0]);
-    if (best && options_.merge_leaves && is_leaf_cheaper(node, best)) return {};
+    if (best && options_.merge_leaves &&
+        builder::is_leaf_cheaper(options_, node.context.count, node.measure,
+                                 strategy_.cost(node.measure, node.context.count, node.context), best.cost))
+      return {};
     return best;
   }
 
@@ -81,15 +84,6 @@ class BinnedBuilder {
     bins.planes().clear();
     strategy_.planes(node, keys, axis, bins.planes());
     bins.use_planes();
-  }
-
-  /// Compares what rays that meet the node pay at it as a leaf, and as an inner node over two leaves.
-  bool is_leaf_cheaper(const OpenNode& node, const Choice& split) const {
-    if (node.context.count > options_.leaf_size) return false;
-    const double triangle = static_cast<double>(options_.costs.triangle);
-    const double leaf = triangle * strategy_.cost(node.measure, node.context.count, node.context);
-    const double inner = static_cast<double>(options_.costs.inner) * static_cast<double>(node.measure);
-    return leaf <= inner + triangle * split.cost;
   }
 
   const Input& input_;

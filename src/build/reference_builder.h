@@ -69,7 +69,6 @@ class ReferenceBuilder {
                      unsigned threads) const;
   Cut find_last_cut(const OpenRange& node, Scratch& scratch, unsigned threads) const;
   Cut halve(const OpenRange& node) const;
-  bool is_leaf_cheaper(const OpenRange& node, const Cut& cut) const;
   bool part_by_space(const OpenRange& node, Cut& cut, double limit, Scratch& scratch, unsigned threads,
                      Children& children) const;
   bool price_sides(const OpenRange& node, Cut& cut, std::span<const SpaceSides> chunks) const;

@@ -49,7 +49,10 @@ bool ReferenceBuilder::split(const OpenRange& node, Scratch& scratch, unsigned t
   if (!cut && !space && options_.split_inseparable) cut = find_last_cut(node, scratch, threads);
   const Cut& chosen = space ? space : cut;
   laps.lap(&BuildTimes::candidates);
-  if (!chosen || (options_.merge_leaves && is_leaf_cheaper(node, chosen))) return false;
+  if (!chosen ||
+      (options_.merge_leaves && is_leaf_cheaper(options_, context.count, node.measure,
+                                                static_cast<double>(node.measure) * context.count, chosen.cost)))
+    return false;
   if (!space) part_by_keys(node, chosen, scratch, threads, children);
   note.axis = static_cast<int8_t>(chosen.axis);
   note.quality = chosen.quality;
@@ -86,7 +89,10 @@ Cut ReferenceBuilder::find_cut(const OpenRange& node, const AxisOrder& order, Sc
   const SliceGrid grid(node.keys, slices_for(node.context.count, options_.parameters.bins));
   for_chunks(references_of(node), threads, [&](size_t chunk, std::span<const Reference> references) {
     scratch.slices[chunk].clear(grid.slices);
-    scratch.slices[chunk].add(grid, references);
+    if (order.count == 1)
+      scratch.slices[chunk].add_along(order.choices[0].axis, grid, references);
+    else
+      scratch.slices[chunk].add(grid, references);
   });
   const size_t chunks = chunks_of(node.context);
   if (chunks == 1) return scratch.slices[0].best_cut(strategy_, node.context, order, grid, scratch.candidates);
@@ -142,14 +148,6 @@ Cut ReferenceBuilder::halve(const OpenRange& node) const {
   cut.cost =
       static_cast<double>(cut.left_measure) * cut.left_count + static_cast<double>(cut.right_measure) * cut.right_count;
   return cut;
-}
-
-/// Compares what rays that meet the node pay at it as a leaf, and as an inner node over two leaves.
-bool ReferenceBuilder::is_leaf_cheaper(const OpenRange& node, const Cut& cut) const {
-  if (node.context.count > options_.leaf_size) return false;
-  const double triangle = static_cast<double>(options_.costs.triangle), measure = static_cast<double>(node.measure);
-  return triangle * measure * node.context.count <=
-         static_cast<double>(options_.costs.inner) * measure + triangle * cut.cost;
 }
 
 ReferenceBuilder::Children ReferenceBuilder::open_children(const OpenRange& node, const Cut& cut) const {

@@ -85,6 +85,18 @@ void Slices::add(const SliceGrid& grid, std::span<const Reference> references) {
   }
 }
 
+void Slices::add_along(int axis, const SliceGrid& grid, std::span<const Reference> references) {
+  const float lo = grid.lo.at[axis], scale = grid.scale.at[axis];
+  PackedBox* const boxes = boxes_.data() + static_cast<size_t>(axis) * slices_;
+  uint32_t* const counts = counts_.data() + static_cast<size_t>(axis) * slices_;
+  for (const Reference& reference : references) {
+    const auto slice =
+        static_cast<size_t>(static_cast<uint32_t>(static_cast<int32_t>((reference.key.at[axis] - lo) * scale)));
+    boxes[slice].extend(reference.box);
+    ++counts[slice];
+  }
+}
+
 void Slices::merge(const Slices& other) {
   for (size_t i = 0; i < boxes_.size(); ++i) {
     boxes_[i].extend(other.boxes_[i]);

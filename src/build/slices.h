@@ -71,6 +71,8 @@ class Slices {
  public:
   void clear(uint32_t slices);
   void add(const SliceGrid& grid, std::span<const Reference> references);
+  /// The same for one axis alone: in a third of the time.
+  void add_along(int axis, const SliceGrid& grid, std::span<const Reference> references);
   void merge(const Slices& other);
 
   /// References in the slices of an axis below `end`.

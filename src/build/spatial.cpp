@@ -1,6 +1,7 @@
 #include "raygrain/build.h"
 #include "raygrain/error.h"
 
+#include "base/timer.h"
 #include "build/reference_builder.h"
 
 namespace raygrain {
@@ -31,10 +32,13 @@ Bvh build_spatial(std::span<const Bounds> bounds, std::span<const Vec3> centroid
   const builder::Input input{bounds, builder::centroids_or_centers(bounds, centroids, centers)};
   builder::check_input(input);
   if (log) *log = {};
+  const Timer timer;
   // Distances beyond float's range: no planes to cut at.
   if (!builder::ReferenceBuilder::serves(input, options.strategy))
     return build_binned(bounds, input.centroids, options, log);
-  return builder::ReferenceBuilder(input, options, true).build(log);
+  Bvh bvh = builder::ReferenceBuilder(input, options, true).build(log);
+  if (log) log->times.total = timer.seconds();
+  return bvh;
 }
 
 }  // namespace raygrain

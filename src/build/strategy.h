@@ -26,6 +26,16 @@ void check_input(const Input& input);
 /// Where a heuristic failed: "node at level 3 with 17 primitives in box (0, 0, 0) to (1, 1, 1)".
 std::string describe(const NodeContext& node);
 
+/// Compares what rays that meet a node of this measure pay at it as a leaf (`leaf_cost` without the triangle's price),
+/// and as an inner node over two leaves (`split_cost`, likewise). Never for more than `leaf_size` primitives.
+inline bool is_leaf_cheaper(const BuildOptions& options, uint32_t count, float measure, double leaf_cost,
+                            double split_cost) {
+  if (count > options.leaf_size) return false;
+  const double triangle = static_cast<double>(options.costs.triangle);
+  return triangle * leaf_cost <=
+         static_cast<double>(options.costs.inner) * static_cast<double>(measure) + triangle * split_cost;
+}
+
 /// One strategy of one build. Refers to the strategy that it was made from.
 class ActiveStrategy {
  public:

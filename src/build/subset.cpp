@@ -30,12 +30,12 @@ std::vector<uint32_t> choose_subset(size_t count, uint64_t seed) {
   return subset;
 }
 
-double square_distance(const Bounds& box, Vec3 p) {
-  double sum = 0;
+/// In float: where it overflows or rounds, a primitive goes to another cluster, which is no error.
+float square_distance(const Bounds& box, Vec3 p) {
+  float sum = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const double x = static_cast<double>(p[axis]);
-    const double outside =
-        std::max({static_cast<double>(box.lo[axis]) - x, 0.0, x - static_cast<double>(box.hi[axis])});
+    const float below = box.lo[axis] - p[axis], above = p[axis] - box.hi[axis];
+    const float outside = std::max(std::max(below, above), 0.0f);
     sum += outside * outside;
   }
   return sum;
@@ -53,7 +53,7 @@ uint32_t find_cluster(const Bvh& top, Vec3 p) {
   while (!top.nodes[node].is_leaf()) {
     const uint32_t left = top.nodes[node].first, right = left + 1;
     const Bounds &a = top.nodes[left].bounds, &b = top.nodes[right].bounds;
-    const double to_a = square_distance(a, p), to_b = square_distance(b, p);
+    const float to_a = square_distance(a, p), to_b = square_distance(b, p);
     const bool is_right = to_a != to_b ? to_b < to_a : center_distance(b, p) < center_distance(a, p);
     node = is_right ? right : left;
   }

@@ -124,7 +124,10 @@ class SweepBuilder {
     note.orientations = static_cast<uint8_t>(admitted.count);
     Choice best = best_of(node, prims, admitted);
     if (!best && options_.split_inseparable) best = last_choice(node, prims);
-    if (best && options_.merge_leaves && is_leaf_cheaper(node, best)) return {};
+    if (best && options_.merge_leaves &&
+        builder::is_leaf_cheaper(options_, node.context.count, node.measure,
+                                 strategy_.cost(node.measure, node.context.count, node.context), best.cost))
+      return {};
     return best;
   }
 
@@ -146,14 +149,6 @@ class SweepBuilder {
     if (const Choice choice = best_of(node, prims, order)) return choice;
     const bool is_large = node.context.count > std::max(options_.leaf_size, options_.parameters.max_triangles_per_leaf);
     return is_large ? builder::halve(input_, prims, strategy_, node.context) : Choice{};
-  }
-
-  bool is_leaf_cheaper(const OpenNode& node, const Choice& split) const {
-    if (node.context.count > options_.leaf_size) return false;
-    const double triangle = static_cast<double>(options_.costs.triangle);
-    const double leaf = triangle * strategy_.cost(node.measure, node.context.count, node.context);
-    const double inner = static_cast<double>(options_.costs.inner) * static_cast<double>(node.measure);
-    return leaf <= inner + triangle * split.cost;
   }
 
   const Input& input_;

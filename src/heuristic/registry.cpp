@@ -113,6 +113,9 @@ const char* builder_name(Quality quality) {
 void set_quality(Recipe& recipe, Quality quality) {
   recipe.builder = builder_name(quality);
   recipe.for_wide = true;
+  if (quality != Quality::kFast || lower(recipe.orientation) != "all") return;
+  recipe.orientation = "LSPH";
+  recipe.parameters.split_plane_quality_threshold = 1;
 }
 
 Quality parse_quality(std::string_view text) {

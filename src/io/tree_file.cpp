@@ -56,7 +56,8 @@ Bvh::Node get_node(std::string_view bytes, size_t at) {
   throw Error(ErrorCode::kMalformed, path, message, "save the tree again");
 }
 
-/// Everything that can be told without the primitives: each gets the box of its first leaf.
+/// Everything that can be told without the primitives: each gets the box of its first leaf, or of all its leaves where
+/// references are split.
 std::optional<std::string> find_structural_defect(const Bvh& bvh) {
   Bvh dense = bvh;  // with ids 0, 1, 2 ...
   std::vector<uint32_t> ids = bvh.prims;
@@ -69,7 +70,7 @@ std::optional<std::string> find_structural_defect(const Bvh& bvh) {
     if (!node.is_leaf()) continue;
     if (size_t{node.first} + node.count > bvh.prims.size()) return "a leaf has primitives out of range";
     for (size_t i = node.first; i < size_t{node.first} + node.count; ++i)
-      if (Bounds& box = boxes[dense.prims[i]]; is_empty(box)) box = node.bounds;
+      if (Bounds& box = boxes[dense.prims[i]]; is_empty(box) || bvh.split_references) box.extend(node.bounds);
   }
   return find_defect(dense, boxes);
 }

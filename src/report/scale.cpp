@@ -27,7 +27,8 @@ std::vector<double> linear_ticks(double lo, double hi) {
 std::vector<double> logarithmic_ticks(double lo, double hi) {
   const bool few = std::log10(hi / lo) < 3;
   std::vector<double> ticks;
-  for (double power = std::floor(std::log10(lo)); power <= std::log10(hi) + 1e-9; ++power)
+  const auto last = static_cast<int>(std::floor(std::log10(hi) + 1e-9));
+  for (auto power = static_cast<int>(std::floor(std::log10(lo))); power <= last; ++power)
     for (const double factor : {1.0, 2.0, 5.0})
       if (const double tick = factor * std::pow(10.0, power);
           (factor == 1 || few) && tick >= lo * (1 - 1e-9) && tick <= hi * (1 + 1e-9))

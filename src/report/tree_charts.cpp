@@ -1,4 +1,5 @@
 // What kind of trees recipes make: how well they predict their cost, and their shape.
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -49,8 +50,9 @@ Chart recipe_prediction_chart(const StudyResults& study) {
       study.rows, [](const ResultRow& row) { return row.recipe; }, tests, prediction_error);
   std::string text;
   for (const ChartSeries& series : panel.series) {
-    const std::vector<ResultRow> rows = filtered(
-        study.rows, [&](const ResultRow& row) { return tests(row) == series.name && row.recipe.starts_with("PAH"); });
+    const std::vector<ResultRow> rows = filtered(study.rows, [&](const ResultRow& row) {
+      return tests(row) == series.name && row.recipe.starts_with("PAH+") && row.text("setting").empty();
+    });
     if (any_measured(rows, prediction_error))
       text +=
           fmt::format("{}{} for {}", text.empty() ? "" : ", ", percent(mean_of(rows, prediction_error)), series.name);
@@ -59,6 +61,11 @@ Chart recipe_prediction_chart(const StudyResults& study) {
                       ? "No recipe uses PAH."
                       : "Trees of PAH mispredict by " + text + "; the paper gives 2 % for planes and 12 % for points.";
   chart.panels.push_back(std::move(panel));
+  for (ChartPanel& shown : chart.panels)  // not all trees have a prediction
+    std::erase_if(shown.groups, [&](const std::string& group) {
+      return std::none_of(shown.measured.begin(), shown.measured.end(),
+                          [&](const ChartPoint& p) { return p.group == group; });
+    });
   return chart;
 }
 

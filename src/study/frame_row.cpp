@@ -91,7 +91,7 @@ class ColumnSearch {
   }
 
  private:
-  bool set_column(const Ray& ray, Column& column) const {
+  bool set_column(const Ray& ray, FrameColumn& column) const {
     const Bounds& root = tree_.local.tree->nodes.front().bounds;
     FrameSegment segment;
     if (make_segment(tree_.frame, ray, {root.lo.z, root.hi.z}, segment) != FrameFit::kServed) return false;
@@ -99,11 +99,11 @@ class ColumnSearch {
     return true;
   }
 
-  static bool meets(const Column& column, const Bounds& box) { return !is_empty(intersected(column.box, box)); }
+  static bool meets(const FrameColumn& column, const Bounds& box) { return !is_empty(intersected(column.box, box)); }
 
   double run(Ray ray, bool prunes, Hit& best) const {
     const std::vector<Bvh::Node>& nodes = tree_.local.tree->nodes;
-    Column column;
+    FrameColumn column;
     double cost = 0;
     if (nodes.empty() || !set_column(ray, column)) return cost;
     std::vector<uint32_t> open{0};
@@ -125,7 +125,7 @@ class ColumnSearch {
   }
 
   /// The one that the ray enters first on top.
-  void push_children(const Bvh::Node& node, const Column& column, std::vector<uint32_t>& open) const {
+  void push_children(const Bvh::Node& node, const FrameColumn& column, std::vector<uint32_t>& open) const {
     const Bounds &left = tree_.local.tree->nodes[node.first].bounds,
                  &right = tree_.local.tree->nodes[node.first + 1].bounds;
     const bool right_first = column.ascending ? right.lo.z < left.lo.z : right.hi.z > left.hi.z;

@@ -24,6 +24,7 @@ TEST(Help, EveryCommandExplainsItself) {
                                                        {"build"},
                                                        {"trace"},
                                                        {"analyze"},
+                                                       {"refit"},
                                                        {"recipes"},
                                                        {"report"},
                                                        {"scene"},

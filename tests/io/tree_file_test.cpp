@@ -69,6 +69,15 @@ TEST_F(TreeFile, ComesBackByteForByte) {
     }
 }
 
+TEST_F(TreeFile, PartsOfAPrimitiveMayLieApart) {
+  Bvh bvh;
+  bvh.split_references = true;
+  bvh.nodes = {{{{0, 0, 0}, {9, 1, 1}}, 1, 0}, {{{0, 0, 0}, {1, 1, 1}}, 0, 1}, {{{8, 0, 0}, {9, 1, 1}}, 1, 2}};
+  bvh.prims = {0, 0, 1};
+  save_tree(bvh, path());
+  EXPECT_EQ(load_tree(path()).prims, bvh.prims);
+}
+
 TEST_F(TreeFile, OfAnAreaMayHaveAnyIds) {
   Bvh bvh = tree_of(test::mesh_families(1)[0].mesh, false);
   for (uint32_t& prim : bvh.prims) prim = 4'000'000'000u - 7 * prim;

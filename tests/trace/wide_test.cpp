@@ -271,6 +271,23 @@ TEST(Wide, TheDeepestTreeFitsTheStack) {
     }
 }
 
+// More candidates than a search keeps must not end a search that is to visit everything.
+TEST(Wide, FullTraversalVisitsAllOfManyCandidates) {
+  TriangleMesh mesh;
+  for (uint32_t i = 0; i < 60; ++i) {
+    const auto x = static_cast<float>(i);
+    mesh.vertices.insert(mesh.vertices.end(), {{x, -1, -1}, {x, 2, -1}, {x, -1, 2}});
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  for (const WideBvh& tree : on_every_isa(binned_tree(mesh), mesh, {.max_leaf_size = 1})) {
+    TraceCounters all, pruned;
+    EXPECT_EQ(tree.intersect_counted({{-1, 0, 0}, {1, 0, 0}}, all, {}, {.prune = false}).triangle, 0u);
+    EXPECT_EQ(tree.intersect_counted({{-1, 0, 0}, {1, 0, 0}}, pruned).triangle, 0u);
+    EXPECT_EQ(all.leaf_hits, 60u) << name(tree.isa());
+    EXPECT_LT(pruned.leaf_hits, 5u) << name(tree.isa());
+  }
+}
+
 TEST(Wide, RefusesBadOptions) {
   const TriangleMesh mesh = test::mesh_families(1).front().mesh;
   const Bvh binary = binned_tree(mesh);
