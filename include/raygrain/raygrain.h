@@ -13,6 +13,7 @@
 #include "raygrain/error.h"
 #include "raygrain/fields.h"
 #include "raygrain/frame.h"
+#include "raygrain/frame_tree.h"
 #include "raygrain/heuristics.h"
 #include "raygrain/io.h"
 #include "raygrain/measure.h"

@@ -67,6 +67,7 @@ AreaTable make_area_table(std::span<const LocalTree> locals, const TopLevelOptio
   for (const LocalTree& local : locals) {
     table.geometries.emplace_back(local.area);
     regions.push_back(table.geometries.back().region());
+    table.axes.emplace_back(table.geometries.back());
   }
   table.ranks = ranks_by_cost(locals);
   table.top_level = TopLevel(regions, options);
