@@ -9,6 +9,7 @@
 #include "raygrain/bvh.h"
 #include "raygrain/chart.h"
 #include "raygrain/compare.h"
+#include "raygrain/coverage.h"
 #include "raygrain/error.h"
 #include "raygrain/fields.h"
 #include "raygrain/frame.h"
