@@ -39,14 +39,6 @@ bench: bench-dependencies ## against Embree on the same rays; BENCH="--json FILE
 demo: build      ## build, then compare the paper's heuristics on a built-in city under a low sun
 	@scripts/demo.sh $(RELEASE)/bin/raygrain build/demo
 
-SCENES ?= ../shared/scenes
-STUDIES ?= paper corrected
-
-study: build     ## the paper's evaluation, sound and corrected, and its report, into build/study; SCENES=DIR, STUDIES="published areas ..."
-	@for study in $(STUDIES); do \
-	  $(RELEASE)/bin/raygrain study $$study --scenes $(SCENES) --jobs $(JOBS) --out build/study/$$study || exit 1; done
-	@$(RELEASE)/bin/raygrain report $(STUDIES:%=build/study/%) --out build/study/report.html --markdown build/study/report.md
-
 page-dependencies:
 	@scripts/install-dependencies.sh pages
 
@@ -83,12 +75,13 @@ gallery: build viewer ## the pictures of the viewer in docs/img
 
 # The paper's models, where a folder beside the checkout has them; without them the public scenes alone.
 SCENES ?= $(wildcard ../shared/scenes)
+STUDIES ?= paper corrected
 STUDY := build/study
 
-study: build     ## the paper's evaluation, corrected, as a report: build/study/report.html
-	@for study in paper corrected; do \
+study: build     ## the paper's evaluation, sound and corrected, as build/study/report.html; SCENES=DIR, STUDIES="published areas ..."
+	@for study in $(STUDIES); do \
 	   $(RELEASE)/bin/raygrain study $$study $(if $(SCENES),--scenes $(SCENES)) --jobs $(JOBS) --out $(STUDY)/$$study || exit 1; done
-	@$(RELEASE)/bin/raygrain report $(STUDY)/paper/results.csv $(STUDY)/corrected/results.csv --out $(STUDY)/report.html
+	@$(RELEASE)/bin/raygrain report $(STUDIES:%=$(STUDY)/%) --out $(STUDY)/report.html --markdown $(STUDY)/report.md
 
 test: dependencies ## everything a commit must pass: sanitizers on the core, then all tests in release
 	@$(MAKE) --no-print-directory asan-test

@@ -28,6 +28,7 @@ constexpr int kTurns = 20;
 AcceleratorOptions bench_options() {
   AcceleratorOptions options;
   options.quality = Quality::kBalanced;
+  options.space = LocalSpace::kRay;
   return options;
 }
 

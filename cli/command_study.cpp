@@ -1,5 +1,5 @@
 // raygrain study: a grid of experiments into a folder, resumable.
-#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 
@@ -38,7 +38,7 @@ Study choose_study(const Options& options) {
 }
 
 std::string duration(double seconds) {
-  const auto whole = static_cast<uint64_t>(seconds + 0.5);
+  const auto whole = static_cast<uint64_t>(std::llround(seconds));
   if (whole < 60) return fmt::format("{} s", whole);
   if (whole < 3600) return fmt::format("{} min {:02} s", whole / 60, whole % 60);
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);

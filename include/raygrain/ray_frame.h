@@ -70,8 +70,8 @@ struct FrameSegment {
   double slope_error = 0;  // beyond z_lo and z_hi the error grows by this times the distance
   double z_lo = 0, z_hi = 0, sure_lo = 0, sure_hi = 0;
   bool ascending = true;  // z grows with t
-  /// Hits whose float t are equal, or in the other order than their depths, differ in depth by at most tie(z), z being
-  /// that of either.
+  /// Hits whose float t are finite and equal, or in the other order than their depths, differ in depth by at most
+  /// tie(z), z being that of either.
   double tie_constant = 0, tie_linear = 0, tie_square = 0;
 
   double tie(double z) const { return tie_constant + (z < 0 ? -z : z) * tie_linear + z * z * tie_square; }

@@ -24,7 +24,7 @@ struct StudyKey {
   std::string ray_set = {};                         // which rays
   uint64_t seed = 1, repeat = 1;
 
-  friend auto operator<=>(const StudyKey&, const StudyKey&) = default;
+  friend auto operator<=>(const StudyKey&, const StudyKey&) = default;  // NOLINT(modernize-use-nullptr): its mistake
 };
 
 /// A column of results.csv beside the key's. Those that are not deterministic (times) differ from run to run.

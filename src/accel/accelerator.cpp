@@ -9,39 +9,14 @@
 #include <utility>
 
 #include "raygrain/error.h"
-#include "raygrain/rays.h"
 
+#include "accel/accelerator_parts.h"
 #include "accel/build_trees.h"
 #include "accel/foreign.h"
 #include "accel/search.h"
 #include "base/parallel.h"
-#include "base/timer.h"
 
 namespace raygrain {
-
-struct Accelerator::Parts {
-  std::shared_ptr<const TriangleMesh> mesh;
-  std::vector<LocalTree> locals;
-  std::vector<SearchTree> searches;  // parallel to `locals`
-  SearchTree global;
-  AreaTable areas;
-  Traversal traversal = Traversal::kWide;
-  std::vector<Coverage> coverages = {};  // parallel to `locals`, or empty
-  ForeignFilter foreign = ForeignFilter(areas.geometries);
-
-  /// Rays along an area that its coverage answers, whatever region they are in.
-  std::optional<Hit> nearest_covered(const Ray& ray) const;
-  std::optional<bool> any_covered(const Ray& ray) const;
-  void count_use(uint32_t area, const Ray& ray, AcceleratorCounters* counters) const;
-
-  Hit nearest(const Ray& ray, AcceleratorCounters* counters) const;
-  bool any(const Ray& ray, AcceleratorCounters* counters) const;
-
-  /// Rays that are no area's go to the global tree together, the others one by one.
-  template <class Answer, class One, class Many>
-  void answer_array(std::span<const Ray> rays, std::span<Answer> answers, unsigned threads, const One& one,
-                    const Many& many) const;
-};
 
 namespace {
 
@@ -67,6 +42,7 @@ AreaTable make_area_table(std::span<const LocalTree> locals, const TopLevelOptio
   for (const LocalTree& local : locals) {
     table.geometries.emplace_back(local.area);
     regions.push_back(table.geometries.back().region());
+    table.axes.emplace_back(table.geometries.back());
   }
   table.ranks = ranks_by_cost(locals);
   table.top_level = TopLevel(regions, options);
@@ -134,20 +110,6 @@ void for_chunks(size_t rays, unsigned threads, AcceleratorCounters* counters, co
     const std::lock_guard lock(mutex);
     counters->add(own);
   });
-}
-
-/// The least of three runs over the rays.
-template <class Trace>
-double nanoseconds_per_ray(std::span<const Ray> rays, const Trace& trace) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < 3; ++round) {
-    const Timer timer;
-    uint32_t sum = 0;  // so that no search is left out
-    for (const Ray& ray : rays) sum += trace(ray).triangle;
-    const double seconds = timer.seconds() + (sum == 0xfffffffeu ? 1e-12 : 0);
-    least = std::min(least, seconds * 1e9 / static_cast<double>(rays.size()));
-  }
-  return least;
 }
 
 /// Are all hits of the ray that can be nearer than `best` known, when those with t <= exit are?
@@ -321,40 +283,6 @@ void Accelerator::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, 
   parts_->answer_array(
       rays, flags, threads, [&](const Ray& ray) { return static_cast<uint8_t>(parts_->any(ray, nullptr)); },
       [&](std::span<const Ray> some, std::span<uint8_t> found) { global->occluded(some, found); });
-}
-
-Explanation Accelerator::explain(const AcceleratorCounters& counters, size_t rays) const {
-  if (rays == 0) throw Error(ErrorCode::kUsage, "explain", "0 rays", "Use at least 1");
-  Explanation explanation;
-  explanation.counters = counters;
-  explanation.global_bytes = raygrain::memory_bytes(global_tree()) + parts_->global.wide_bytes();
-  for (size_t i = 0; i < parts_->locals.size(); ++i) {
-    const LocalTree& local = parts_->locals[i];
-    const SearchTree& search = parts_->searches[i];
-    AreaReport report;
-    report.name = local.area.name;
-    report.triangles = local.tree->prims.size();
-    report.build_seconds = local.build_seconds;
-    report.memory_bytes = raygrain::memory_bytes(*local.tree) + search.wide_bytes();
-    if (i < parts_->coverages.size() && parts_->coverages[i].is_useful()) {
-      report.structures += "coverage, ";
-      report.build_seconds += parts_->coverages[i].build_seconds();
-      report.memory_bytes += parts_->coverages[i].memory_bytes();
-    }
-    if (const auto& tree = search.in_ray_space())
-      report.structures += std::string("tree in ray space (") + raygrain::name(tree->frame().kind) + "), ";
-    report.structures += "tree";
-    const std::vector<Ray> sample = cast_rays(AreaRays{local.area, RayStart::kRandomDepth}, rays, i + 1);
-    const double here = nanoseconds_per_ray(sample, [&](const Ray& ray) { return parts_->nearest(ray, nullptr); });
-    const double global =
-        nanoseconds_per_ray(sample, [&](const Ray& ray) { return parts_->global.intersect(ray, {}, {}, nullptr); });
-    report.area_nanoseconds = here;
-    report.global_nanoseconds = global;
-    report.break_even_rays =
-        global > here ? report.build_seconds * 1e9 / (global - here) : std::numeric_limits<double>::infinity();
-    explanation.areas.push_back(std::move(report));
-  }
-  return explanation;
 }
 
 std::span<const Coverage> Accelerator::coverages() const {

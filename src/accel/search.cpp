@@ -14,12 +14,20 @@ Ray moved_along(const Ray& ray, float t) {
 
 }  // namespace
 
+AxisTest::AxisTest(const AreaGeometry& area)
+    : axis_(area.is_plane() ? area.frame().forward : area.frame().origin), is_plane_(area.is_plane()) {
+  // A little less than is_direction_affine asks for.
+  const double least = std::max(0.0, 1 - static_cast<double>(area.area().tolerance) - 0x1p-40);
+  least_ = least * least * (1 - 0x1p-40);
+}
+
 AreaWalk::AreaWalk(const AreaTable& areas, const Ray& ray, AcceleratorCounters* counters)
     : areas_(areas), ray_(ray), counters_(counters) {}
 
 std::optional<AreaWalk::Stage> AreaWalk::next() {
   if (areas_.geometries.empty()) return {};
   if (ray_.tmin < 0) return {};  // hits behind the origin: no area's region certifies anything about them
+  if (!started_ && !may_be_served()) return {};
   if (started_) search_.skip_before = from_;
   const Ray here = started_ ? moved_along(ray_, from_) : ray_;
   while (tried_count_ < kMaxStages) {
@@ -35,6 +43,12 @@ std::optional<AreaWalk::Stage> AreaWalk::next() {
     return Stage{*area, exit};
   }
   return {};
+}
+
+bool AreaWalk::may_be_served() const {
+  constexpr size_t kFew = 16;  // more are looked up by place
+  if (areas_.axes.size() > kFew) return true;
+  return std::ranges::any_of(areas_.axes, [&](const AxisTest& axis) { return axis(ray_); });
 }
 
 bool AreaWalk::was_tried(uint32_t area) const {

@@ -12,10 +12,27 @@
 namespace raygrain {
 
 /// What the walk reads, parallel by area.
+/// Can an area's direction suit a ray? Sure to say yes where is_direction_affine does, and cheap.
+class AxisTest {
+ public:
+  explicit AxisTest(const AreaGeometry& area);
+  bool operator()(const Ray& ray) const {
+    const Vec3d d = to_double(ray.direction), axis = is_plane_ ? axis_ : to_double(ray.origin) - axis_;
+    const double along = dot(d, axis);
+    return along * along >= least_ * dot(d, d) * dot(axis, axis);
+  }
+
+ private:
+  Vec3d axis_;  // the direction, or the eye
+  double least_;
+  bool is_plane_;
+};
+
 struct AreaTable {
   std::vector<AreaGeometry> geometries;
   std::vector<uint32_t> ranks;  // place in the order of predicted cost, ties by index
   TopLevel top_level;
+  std::vector<AxisTest> axes;
 };
 
 /// Chooses the areas whose trees a ray searches, one after the other.
@@ -54,6 +71,7 @@ class AreaWalk {
     if (counters_ != nullptr) ++(counters_->*what);
   }
   bool was_tried(uint32_t area) const;
+  bool may_be_served() const;
   std::optional<uint32_t> cheapest_serving(const Ray& from_here);
   float certain_exit(uint32_t area) const;
 

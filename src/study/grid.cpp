@@ -8,6 +8,7 @@
 #include "raygrain/refine.h"
 #include "raygrain/study.h"
 
+#include "base/timer.h"
 #include "study/frame_row.h"
 #include "study/scene_pool.h"
 #include "study/tree_row.h"
@@ -77,8 +78,11 @@ std::vector<std::string> GridRow::run() const {
     study::set_frame_cells(cells, trees, geometry, recipe.recipe, options, cast);
     return cells.take();
   }
+  const Timer timer;
   const LocalTree local = build(trees, samples, options.strategy.measure);
+  const double build_seconds = timer.seconds();  // of all of it: choosing members and reinsertion, too
   study::set_tree_cells(cells, study::exact_test(trees, local, geometry, cast, grid->costs), options.strategy.measure);
+  cells.set("build_seconds", build_seconds);
   return cells.take();
 }
 

@@ -25,7 +25,6 @@ namespace {
 // One constant of that program served as every tolerance.
 constexpr float kTolerance = 0.01f;
 constexpr uint32_t kOctreeLevel = 5;
-
 /// A combination as published. The point tests that were printed as PAH+LSPH had been made with another recipe; both
 /// are run.
 struct Combo {
@@ -227,20 +226,16 @@ Bvh build_published(const TriangleMesh& mesh, std::span<const uint32_t> members,
   for (uint32_t& primitive : tree.prims) primitive = members[primitive];
   return tree;
 }
-
 Bounds box_of(const TriangleMesh& mesh, std::span<const uint32_t> members) {
   Bounds box;
   for (const uint32_t member : members) box.extend(triangle_bounds(mesh, member));
   return box;
 }
-
 Bvh build_published_global(const TriangleMesh& mesh) {
   std::vector<uint32_t> all(mesh.triangle_count());
   std::iota(all.begin(), all.end(), 0u);
   return build_published(mesh, all, published_options(kGlobal, nullptr, box_of(mesh, all)), nullptr);
 }
-
-// --- One test. ---
 
 /// A slip of the published run.
 StudyArea published_area(const StudyArea& area, const std::string& scene, const Combo& combo) {

@@ -68,6 +68,7 @@ struct FrameMemory {
   Bounds bounds;
   std::array<float, 2> depths{};           // a little more than the bounds': what rays are followed through
   double middle = 0, half = 0, depth = 0;  // of these depths, and the largest magnitude of them
+  double farthest = 0;                     // no local z of the tree is greater in magnitude
   double least_slope = 0;                  // of cones: less counts as this
   double width = 0;                        // no |x| or |y| of the bounds is greater
   double reach = 0;                        // for edges and planes

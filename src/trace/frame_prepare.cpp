@@ -161,7 +161,10 @@ FrameUse prepare(const FrameMemory& tree, const Ray& ray, FrameQuery& query) {
   const double origin_size = frame.norm * largest(offset), direction_size = frame.norm * largest(direction);
   const double inverse = 1 / m.z, steepness = direction_size * std::abs(inverse);
   Depths depths(ray, q.z, m.z, origin_size, direction_size);
-  if (!(steepness <= kSteepest)) return FrameUse::kUnfit;
+  // Where t overflows, hits at any depth have the same t.
+  constexpr double kLongest = 0x1p126;
+  if (!(steepness <= kSteepest && (std::abs(q.z) + tree.farthest) * std::abs(inverse) <= kLongest))
+    return FrameUse::kUnfit;
   FrameLine line;
   if (frame.is_projective()) {
     if (!(origin_size <= kFarthest * frame.near_z)) return FrameUse::kUnfit;

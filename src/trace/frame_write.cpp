@@ -40,6 +40,7 @@ void set_sizes(FrameMemory& tree, const Bounds& bounds) {
   tree.middle = 0.5 * (lo + hi);
   tree.half = 0.5 * (hi - lo) * (1 + 0x1p-40);
   tree.depth = std::max(std::abs(lo), std::abs(hi));
+  tree.farthest = !tree.frame.is_projective() ? tree.depth : hi < 0 ? -1 / hi : std::numeric_limits<double>::infinity();
   tree.least_slope = 0x1p-40 * tree.width / tree.depth;
 }
 

@@ -71,6 +71,24 @@ TEST(Classification, EveryStructureEqualsBruteForce) {
   EXPECT_GT(all.cones, all.rays / 50);
 }
 
+// Two triangles overlap a narrow region and reach far beyond it: the area's tree is complete, its frame's domain is
+// not.
+TEST(Classification, RaysThatLeaveTheWindowFindTriangles) {
+  TriangleMesh mesh;
+  mesh.vertices = {{-10, 0, 5}, {10, 0, 5}, {0, 30, 5}, {-10, 0, 8}, {10, 0, 8}, {0, 30, 8}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  const InfluenceArea narrow{"narrow", PlaneArea{{0, 5, 0}, {0, 0, 1}, {0, 1, 0}, 0.5f, 0.5f, 10}, 0.3f};
+  for (const LocalSpace space : {LocalSpace::kWorld, LocalSpace::kRay}) {
+    const Accelerator scene(mesh, {narrow}, options_of(space, false));
+    for (int i = 0; i < 200; ++i) {
+      const auto lean = static_cast<float>(i - 100) * 0.006f;
+      const Ray ray{{0.2f, 5, 0}, {lean, 0.5f * lean, 1}};
+      ASSERT_TRUE(identical(scene.intersect(ray), intersect_reference(mesh, ray))) << i;
+      ASSERT_EQ(scene.occluded(ray), occluded_reference(mesh, ray)) << i;
+    }
+  }
+}
+
 TEST(Classification, AGivenFrameIsTaken) {
   const TriangleMesh mesh = test::mesh_families(2).front().mesh;
   const InfluenceArea sun = directional_light_area("sun", {0.5f, -0.7f, 0.5f}, mesh_bounds(mesh));

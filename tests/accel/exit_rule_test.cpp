@@ -190,7 +190,7 @@ TEST(ExitRule, ForeignAndInvalidRays) {
   add_floor(mesh, 2, 1);
   const Accelerator scene(mesh, {z_area("lamp", 0, 4)}, trees_alone());
   AcceleratorCounters counters = check(scene, {{0, 0, 0}, {1, 0, 1}});  // 45 degrees off
-  EXPECT_EQ(counters.areas_tested, 1u);
+  EXPECT_EQ(counters.areas_tested, 0u);  // no area has such a direction: none is looked up
   EXPECT_EQ(counters.areas_serving, 0u);
   EXPECT_EQ(counters.global_searches, 1u);
   counters = check(scene, {{0, 0, -5}, {0, 0, 1}});  // starts outside
