@@ -35,7 +35,7 @@ struct Options {
 };
 
 std::string template_path(const Options& options) {
-  const std::string path = options.page_template.empty() ? built_page("viewer.html") : options.page_template;
+  std::string path = options.page_template.empty() ? built_page("viewer.html") : options.page_template;
   if (path.empty())
     throw Error(ErrorCode::kNotFound, "viewer.html", "the viewer's page is not built",
                 "Run make viewer (it needs node and npm), or give a built page with --template");
@@ -46,6 +46,7 @@ std::vector<Recipe> chosen_recipes(const Options& options, bool has_areas, const
   std::vector<std::string> names = options.recipes;
   if (names.empty()) names = {"SAH+LSPH", has_areas ? "PAH+ALL" : "SAH+ALL"};
   std::vector<Recipe> recipes;
+  recipes.reserve(names.size());
   for (const std::string& name : names) recipes.push_back(parse_recipe(name, registry));
   for (const Recipe& recipe : recipes)
     if (!has_areas && (needs_area(recipe, registry) || needs_samples(recipe, registry)))

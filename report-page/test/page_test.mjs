@@ -24,7 +24,9 @@ function makeReport() {
   const page = join(folder, 'report.html');
   const template = join(program, '../../share/raygrain/report-page.html');
   const files = Object.keys(results).map((name) => join(folder, name));
-  execFileSync(program, ['report', ...files, '--out', page, '--template', template], {
+  const view = join(folder, 'my view.html');
+  writeFileSync(view, '<!doctype html><title>view</title>');
+  execFileSync(program, ['report', ...files, '--out', page, '--template', template, '--views', view], {
     stdio: ['ignore', 'ignore', 'inherit'],
   });
   return page;
@@ -178,6 +180,8 @@ await visit(report, { viewport: desktop, colorScheme: 'light' }, async (tab) => 
   checkCharts(await charts(tab));
   const light = await lightness(tab);
   assert.ok(light.paper > 0.9 && light.text < 0.3, 'dark on light');
+  const link = tab.getByRole('link', { name: 'See my view' });
+  assert.equal(await link.getAttribute('href'), 'my%20view.html', 'views are linked beside the report');
   await tab.screenshot({ path: join(folder, 'top.png') });
   await checkHover(tab);
   await tab.screenshot({ path: join(folder, 'hover.png') });

@@ -249,5 +249,17 @@ TEST(ChartPictures, AreDrawnOnWhiteInTheirOwnColours) {
   EXPECT_NE(chart_svg(huge).find("</svg>"), std::string::npos);
 }
 
+TEST(StudyReport, LinksPagesInAllItsForms) {
+  StudyReport report = report_of(paper_results());
+  report.links = {{"See <Sponza>", "views/sponza%20sun.html"}};
+  EXPECT_NE(static_page(report, "").find("<a href=\"views/sponza%20sun.html\">See &lt;Sponza&gt;</a>"),
+            std::string::npos);
+  EXPECT_NE(
+      report_markdown(report, [](const Chart&, size_t) { return std::string{}; }).find("](views/sponza%20sun.html)"),
+      std::string::npos);
+  const auto json = nlohmann::json::parse(study_report_json(report));
+  EXPECT_EQ(json["links"][0]["address"], "views/sponza%20sun.html");
+}
+
 }  // namespace
 }  // namespace raygrain::test
