@@ -15,6 +15,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kDataPlace = "@RAYGRAIN_VIEW@", kBlobPlace = "@RAYGRAIN_BLOBS@";
+constexpr size_t kLargestPage = 400'000'000;  // browsers hold no longer texts than half a gigabyte
 constexpr PageKind kViewer{"viewer page", "viewer"};
 
 Json vector_json(Vec3d v) {
@@ -129,6 +130,10 @@ std::string view_page(const Scene& scene, std::span<const ViewTree> trees, const
                   {"areas", std::move(areas)},
                   {"trees", std::move(tree_list)},
                   {"topLevel", pack_top_level(scene, options.top_level, lines)}};
+  if (lines.size() > kLargestPage)
+    throw Error(ErrorCode::kLimit, "view of " + scene.name,
+                "is too large for a browser: " + std::to_string(lines.size() / 1'000'000) + " MB",
+                "Show fewer recipes or areas, or a smaller scene");
   const std::string text = data.dump(-1, ' ', false, Json::error_handler_t::replace);
   const std::string with_blobs =
       filled_page(page, kBlobPlace, lines, kViewer, path);  // they hold no place, texts might

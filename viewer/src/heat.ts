@@ -1,4 +1,4 @@
-// Costs of a picture's pixels, computed in slices so that the page stays alive.
+// Costs or visits of a picture's pixels, computed in slices so that the page stays alive.
 import { pixelRay, type Area } from './area';
 import type { Costs } from './data';
 import type { Mesh } from './mesh';
@@ -22,6 +22,8 @@ export interface HeatOptions {
   area: Area;
   size: number;
   pruned: boolean;
+  /** Count boxes instead of costs. */
+  visits: boolean;
   costs: Costs;
   /** Told the finished share; false ends it. */
   progress: (done: number) => boolean;
@@ -37,7 +39,8 @@ export async function costImage(tree: Tree, mesh: Mesh, options: HeatOptions): P
   for (let row = 0; row < height; ++row) {
     for (let column = 0; column < width; ++column) {
       const ray = pixelRay(options.area, width, height, column, row);
-      cost[row * width + column] = costOf(search(tree, mesh, ray, options.pruned).counts, options.costs);
+      const { counts } = search(tree, mesh, ray, options.pruned);
+      cost[row * width + column] = options.visits ? counts.inner + counts.leaves : costOf(counts, options.costs);
     }
     if (performance.now() - began < SLICE) continue;
     if (!options.progress((row + 1) / height)) return null;

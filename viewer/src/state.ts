@@ -4,6 +4,7 @@ export type Show = 'none' | 'all' | 'level' | 'leaves';
 export type ColourBy = 'depth' | 'measure' | 'overlap' | 'visits' | 'random';
 export type TopShow = 'none' | 'leaves' | 'wireframe' | 'both';
 export type CostMode = 'wiper' | 'beside' | 'difference';
+export type CostWhat = 'cost' | 'visits';
 
 export interface State {
   tree: number;
@@ -36,6 +37,7 @@ export interface State {
   cast: boolean;
   cost: boolean;
   costMode: CostMode;
+  costWhat: CostWhat;
   costSize: number;
   costPruned: boolean;
   /** Whose view the cost is shown from: an area's, or -1 for that of the camera. */
@@ -73,6 +75,7 @@ export const DEFAULTS: State = {
   cast: false,
   cost: false,
   costMode: 'wiper',
+  costWhat: 'cost',
   costSize: 192,
   costPruned: true,
   costFrom: 0,
@@ -107,6 +110,7 @@ const WORDS: Partial<Record<Key, string[]>> = {
   colour: ['depth', 'measure', 'overlap', 'visits', 'random'],
   top: ['none', 'leaves', 'wireframe', 'both'],
   costMode: ['wiper', 'beside', 'difference'],
+  costWhat: ['cost', 'visits'],
   theme: ['auto', 'light', 'dark'],
 };
 const LIMITS: Partial<Record<Key, [number, number]>> = {

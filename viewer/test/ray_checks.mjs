@@ -94,6 +94,12 @@ export async function checkCost(tab) {
   await ready();
   const full = (await tab.locator('.cost .names').getAttribute('data-means')).split(',').map(Number);
   assert.ok(full[0] > means[0] && full[1] > means[1], 'without pruning rays pay more');
+  await choose(tab, 'Count', 'visits');
+  await settled(tab);
+  await ready();
+  const visits = (await tab.locator('.cost .names').getAttribute('data-means')).split(',').map(Number);
+  assert.ok(visits[0] > 1 && visits[0] < full[0], 'boxes can be counted instead of costs');
+  await choose(tab, 'Count', 'cost');
   await tab.keyboard.press('Escape');
   assert.equal(await tab.locator('.cost').isVisible(), false);
 }

@@ -29,12 +29,27 @@ export function segments(list: Segment[], onTop: boolean): THREE.LineSegments {
 
 const EDGES = [0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 1, 3, 4, 6, 5, 7, 0, 4, 1, 5, 2, 6, 3, 7];
 
-/** The box or frustum of an area, its eye, and an arrow along its rays. */
+/** A few of the area's rays, from its near to its far face. */
+function sampleRays(area: Area, colour: Colour): Segment[] {
+  const list: Segment[] = [];
+  /** A place on a face: corners 0 ... 3 are the near one's, 4 ... 7 the far one's. */
+  const at = (face: number, x: number, y: number): Vec =>
+    [0, 1, 2].map((k) => {
+      const [a, b, c, d] = [0, 1, 2, 3].map((i) => area.corners[4 * face + i][k]);
+      return (a * (1 - x) + b * x) * (1 - y) + (c * (1 - x) + d * x) * y;
+    }) as Vec;
+  for (const x of [0.25, 0.5, 0.75])
+    for (const y of [0.25, 0.5, 0.75]) list.push({ from: at(0, x, y), to: at(1, x, y), colour });
+  return list;
+}
+
+/** The box or frustum of an area, its eye, some of its rays, and an arrow along them. */
 export function areaLines(area: Area, index: number): THREE.LineSegments {
   const colour = randomColour(index + 3);
   const list: Segment[] = [];
   for (let i = 0; i < EDGES.length; i += 2) list.push({ from: area.corners[EDGES[i]], to: area.corners[EDGES[i + 1]], colour });
   if (area.kind === 'point') for (let i = 0; i < 4; ++i) list.push({ from: area.origin, to: area.corners[i], colour });
+  list.push(...sampleRays(area, colour.map((c) => Math.round(c * 0.6 + 70)) as Colour));
   const start = area.corners.slice(0, 4).reduce<Vec>((sum, c) => [sum[0] + c[0] / 4, sum[1] + c[1] / 4, sum[2] + c[2] / 4], [0, 0, 0]);
   const size = (area.far - area.near) * 0.25;
   const at = (along: number, aside: number, up: number): Vec =>

@@ -4,7 +4,7 @@ import type { Area } from '../area';
 import { divergingColour, gradient, rampColour, type Colour } from '../colours';
 import { button, checkbox, element, numberText, save, select, svg } from '../dom';
 import { costImage, highPercentile, histogram, meanOf, type CostImage } from '../heat';
-import type { CostMode } from '../state';
+import type { CostMode, CostWhat } from '../state';
 import { treeName } from './tree_panel';
 
 const BINS = 48;
@@ -41,6 +41,7 @@ export class CostView {
   private readonly chart = element('div');
   private readonly sizes = select('Pixels', ['96', '192', '320', '512'].map((value) => ({ value, label: value })), (value) => this.app.store.set({ costSize: Number(value) }));
   private readonly modes;
+  private readonly what;
   private readonly from;
   private readonly trees;
   private readonly pruned = checkbox('nearest hit prunes', (on) => this.app.store.set({ costPruned: on }));
@@ -55,6 +56,11 @@ export class CostView {
       ['difference', 'difference'],
     ];
     this.modes = select('Show', modes.map(([value, label]) => ({ value, label })), (value) => app.store.set({ costMode: value as CostMode }));
+    const whats = [
+      { value: 'cost', label: 'cost' },
+      { value: 'visits', label: 'visited boxes' },
+    ];
+    this.what = select('Count', whats, (value) => app.store.set({ costWhat: value as CostWhat }));
     const views = [...app.data.areas.map((area, i) => ({ value: String(i), label: area.name })), { value: '-1', label: 'this view' }];
     this.from = select('Seen from', views, (value) => app.store.set({ costFrom: Number(value) }));
     const choices = app.data.trees.map((_, i) => ({ value: String(i), label: treeName(app, i) }));
@@ -64,7 +70,7 @@ export class CostView {
     ];
     const close = button('×', 'Close (Esc)', () => app.store.set({ cost: false }));
     const png = button('PNG', 'Save the pictures', () => void this.download());
-    const controls = element('div', { class: 'controls' }, ...this.trees.map((t) => t.row), this.from.row, this.modes.row, this.sizes.row, this.pruned.row, png, close);
+    const controls = element('div', { class: 'controls' }, ...this.trees.map((t) => t.row), this.from.row, this.what.row, this.modes.row, this.sizes.row, this.pruned.row, png, close);
     this.element = element('section', { class: 'cost', 'aria-label': 'Cost per pixel' }, controls, this.names, this.pictures, this.wiper, this.scale, this.chart, this.said);
     this.pictures.addEventListener('pointermove', (event) => this.point(event));
     app.onChange(() => void this.update());
@@ -82,11 +88,12 @@ export class CostView {
     this.trees[1].set(String(state.other));
     this.from.set(String(state.costFrom));
     this.modes.set(state.costMode);
+    this.what.set(state.costWhat);
     this.sizes.set(String(state.costSize));
     this.pruned.set(state.costPruned);
     this.wiper.value = String(state.wiper);
     this.wiper.hidden = state.costMode !== 'wiper';
-    const key = [state.tree, state.other, state.costFrom, state.costSize, state.costPruned, state.costFrom < 0 ? state.camera.join() : ''].join();
+    const key = [state.tree, state.other, state.costFrom, state.costSize, state.costPruned, state.costWhat, state.costFrom < 0 ? state.camera.join() : ''].join();
     if (key !== this.key) await this.compute(key);
     else this.draw();
   }
@@ -104,7 +111,7 @@ export class CostView {
         this.said.textContent = `${Math.round(50 * (images.length + done))} % of the rays are traced …`;
         return run === this.run && this.app.state.cost;
       };
-      const image = await costImage(tree, mesh, { area, size: state.costSize, pruned: state.costPruned, costs: data.costs, progress });
+      const image = await costImage(tree, mesh, { area, size: state.costSize, pruned: state.costPruned, visits: state.costWhat === 'visits', costs: data.costs, progress });
       if (!image || run !== this.run) {
         if (run === this.run) this.key = '';
         return;
@@ -143,7 +150,7 @@ export class CostView {
   }
 
   private showScale(low: number, high: number, diverging: boolean): void {
-    const title = diverging ? 'right minus left, per ray' : 'cost per ray; the scale ends where 99 % of the pixels lie';
+    const title = diverging ? 'right minus left, per ray' : `${this.app.state.costWhat === 'cost' ? 'cost' : 'visited boxes'} per ray; the scale ends where 99 % of the pixels lie`;
     const ends = element('div', { class: 'ends' }, element('span', {}, numberText(low)), element('span', {}, title), element('span', {}, numberText(high)));
     this.scale.replaceChildren(element('div', { class: 'bar', style: `background:${diverging ? gradient(divergingColour, -1, 1) : gradient(rampColour, 0, 1)}` }), ends);
   }
