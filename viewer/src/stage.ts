@@ -260,7 +260,7 @@ export class Stage {
       up,
       forward: back.map((x) => -x) as Vec,
       origin: position as Vec,
-      tolerance: 0,
+      tolerance: 0.01,
       slack: Infinity,
       planes: [],
       corners: [],

@@ -23,7 +23,7 @@ export async function checkRays(tab, areas, scene) {
   await choose(tab, 'Tree', '0');
   await choose(tab, 'Coloured by', 'visits');
   await settled(tab);
-  assert.match(await textOf(tab, '.legend .ends'), /^0\s+rays that meet the box\s+\d{2,}$/, 'boxes are coloured by visits');
+  assert.match(await textOf(tab, '#panel-tree .legend .ends'), /^0\s+rays that meet the box\s+\d{2,}$/, 'boxes are coloured by visits');
   await shot(tab, 'visits');
   const stage = await tab.locator('.stage canvas').boundingBox();
   for (let x = 200; x < 900; x += 6) {

@@ -6,7 +6,7 @@ import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { WITHOUT_GPU } from '../../scripts/browser.mjs';
-import { choose, desktop, folder, here, makePage, program, redrawn, settled, shot, visit } from './helpers.mjs';
+import { choose, desktop, folder, here, makePage, program, rayNumbers, redrawn, run, settled, shot, textOf, visit } from './helpers.mjs';
 import { checkCompare, checkCost, checkRays, checkRest, checkTop } from './ray_checks.mjs';
 import { checkAreas, checkNode, checkScene, checkTrees } from './scene_checks.mjs';
 
@@ -18,6 +18,27 @@ const SUN = ['--sun', '0.35,-0.8,0.48'];
 function checkPageItself() {
   const unit = spawnSync(process.execPath, [join(here, 'unit.mjs'), program, folder], { stdio: ['ignore', 'pipe', 'inherit'], encoding: 'utf8' });
   assert.equal(unit.status, 0, unit.stdout);
+}
+
+/** Trees of a whole scene: rays and costs are those of the view. */
+async function checkWithoutAreas() {
+  const mesh = join(folder, 'mesh.ply');
+  run('scene', 'generate', 'procedural:city?size=2', '-o', mesh);
+  await visit(makePage('whole.html', mesh), {}, async (tab) => {
+    await tab.keyboard.press('r');
+    await tab.waitForFunction(() => document.querySelector('#ray-numbers data[data-name=rays]')?.value === '200');
+    assert.ok((await rayNumbers(tab)).hits[0] > 10, 'rays of the view hit the scene');
+    await tab.keyboard.press('h');
+    await tab.waitForFunction(() => document.querySelector('.cost').dataset.ready === 'true', null, { timeout: 60_000 });
+    await shot(tab, 'whole-cost');
+    await tab.keyboard.press('Escape');
+    await choose(tab, 'Coloured by', 'overlap');
+    assert.match(await textOf(tab, '#panel-tree .legend'), /overlap needs an area/);
+    await tab.getByRole('button', { name: 'the root' }).click();
+    assert.equal(await tab.locator('.hulls').count(), 0, 'no area sees it');
+    await settled(tab);
+    await shot(tab, 'whole');
+  });
 }
 
 /** The page as `--serve` offers it. */
@@ -125,8 +146,9 @@ await visit(city, { flags: [...WITHOUT_GPU, '--disable-3d-apis'] }, async (tab) 
   assert.match(await tab.getByRole('alert').innerText(), /cannot use WebGL/);
   await shot(tab, 'without-webgl');
 });
-const plain = makePage('plain.html', 'procedural:random100', '--recipes', 'SAH+LSPH,SAH+ALL@spatial', ...SUN);
-await visit(plain, {}, async (tab) => assert.match(await tab.locator('.pane-names').innerText(), /SAH\+LSPH/));
+const spatial = makePage('spatial.html', 'procedural:random100', '--recipes', 'SAH+LSPH,SAH+ALL@spatial', ...SUN);
+await visit(spatial, {}, async (tab) => assert.match(await tab.locator('.pane-names').innerText(), /SAH\+LSPH/));
+await checkWithoutAreas();
 await checkServe();
 if (!quick) {
   await checkLarge('sponza', 25, 5);
