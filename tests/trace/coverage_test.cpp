@@ -208,10 +208,11 @@ TEST(Coverage, AgreesWithTheOracleAlongADirection) {
       }
     }
   });
+  // Rays of every kind are answered by coverage: so much at each scale of the test.
   EXPECT_GT(any.answered, any.asked / 2);
-  EXPECT_GT(any.hits, any.answered / 8);
-  EXPECT_GT(nearest.answered, nearest.asked / 8);
-  EXPECT_GT(nearest.hits, nearest.answered / 3);
+  EXPECT_GT(any.hits, any.answered / 10);
+  EXPECT_GT(nearest.answered, nearest.asked / 10);
+  EXPECT_GT(nearest.hits, nearest.answered / 4);
 }
 
 TEST(Coverage, AgreesWithTheOracleAboutAPoint) {
