@@ -11,7 +11,7 @@ CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_
 BENCH ?= --quick
 
 .PHONY: help build demo study bench bench-dependencies report-page report-page-test viewer viewer-test page-dependencies gallery \
-        test test-full asan-test release-test tsan-test clang-test neon-test coverage format check-format tidy \
+        test test-full asan-test release-test pages-for-tests tsan-test clang-test neon-test coverage format check-format tidy \
         dependencies full-dependencies install clean
 
 help:            ## this list
@@ -92,10 +92,15 @@ asan-test:
 	@cmake --build $(ASAN) -j $(JOBS) --target $(CORE_TESTS)
 	@cd $(ASAN) && RAYGRAIN_TEST_SCALE=small $(CTEST) -R '^core\.'
 
-release-test:
+release-test: pages-for-tests
 	@$(call PRESET,release)
 	@cmake --build $(RELEASE) -j $(JOBS)
 	@cd $(RELEASE) && $(CTEST)
+
+# Where node, npm's registry or a browser cannot be had, the test of the viewer says so and is skipped.
+pages-for-tests:
+	@scripts/install-dependencies.sh browser && $(MAKE) --no-print-directory viewer \
+	   || echo "The viewer's page cannot be built or shown here: its test is skipped."
 
 test-full: full-dependencies ## all of it: ThreadSanitizer, Clang, coverage, clang-tidy, the full ray counts
 	@$(MAKE) --no-print-directory check-format

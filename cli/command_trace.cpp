@@ -177,6 +177,7 @@ Accelerator make_accelerator(const Options& options, const Scene& scene, const s
   if (options.tree.empty()) return Accelerator(scene.mesh, areas, build);
   auto global = std::make_shared<const Bvh>(load_tree_for(scene.mesh, options.tree));
   std::vector<LocalTree> locals;
+  locals.reserve(areas.size());
   for (const InfluenceArea& area : areas)
     locals.push_back(
         build_local_tree(scene.mesh, area, build.local, build.registry, {}, build.samples(&area), {build.threads, {}}));

@@ -126,7 +126,7 @@ void Slices::sweep(const AxisChoice& axis, uint32_t choice, uint32_t total, CutC
   }
   side = {};
   size_t candidate = candidates.size();
-  for (uint32_t left = total; candidate > first; --slice) {
+  for ([[maybe_unused]] uint32_t left = total; candidate > first; --slice) {
     if (counts[slice] == 0) continue;
     side.extend(boxes[slice]);
     left -= counts[slice];

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The viewer's page in a browser: viewer.sh PROGRAM SOURCE FOLDER. Skipped (77) where its parts are not installed or built, which needs the network:
-# `make viewer` builds them, `make viewer-test` tests all of it.
+# `make viewer` builds them, `make viewer-test` tests large scenes, too.
 set -euo pipefail
 program=$1 source=$2 folder=$3
 skip() { echo "skipped: $1"; exit 77; }
@@ -12,4 +12,4 @@ page=$(dirname "$program")/../share/raygrain/viewer.html
 [ -f "$page" ] || skip "the viewer's page is not built (make viewer)"
 newer=$(find "$source/viewer/src" "$source/viewer/index.html" -newer "$page" -print -quit)
 [ -z "$newer" ] || skip "the viewer's page is older than $newer (make viewer)"
-exec node "$source/viewer/test/viewer_test.mjs" "$program" "$folder" --smoke
+exec node "$source/viewer/test/viewer_test.mjs" "$program" "$folder" --quick
