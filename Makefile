@@ -11,7 +11,7 @@ CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_
 BENCH ?= --quick
 
 .PHONY: help build demo study bench bench-dependencies report-page report-page-test viewer viewer-test page-dependencies gallery \
-        test test-full asan-test release-test pages-for-tests tsan-test clang-test neon-test coverage format check-format tidy \
+        test test-full asan-test release-test pages-for-tests pages-if-possible tsan-test clang-test neon-test coverage format check-format tidy \
         dependencies full-dependencies install clean
 
 help:            ## this list
@@ -78,7 +78,7 @@ SCENES ?= $(wildcard ../shared/scenes)
 STUDIES ?= paper corrected
 STUDY := build/study
 
-study: build     ## the paper's evaluation, sound and corrected, as build/study/report.html; SCENES=DIR, STUDIES="published areas ..."
+study: build pages-if-possible ## the paper's evaluation, sound and corrected, as build/study/report.html; SCENES=DIR, STUDIES="published areas ..."
 	@for study in $(STUDIES); do \
 	   $(RELEASE)/bin/raygrain study $$study $(if $(SCENES),--scenes $(SCENES)) --jobs $(JOBS) --out $(STUDY)/$$study || exit 1; done
 	@$(RELEASE)/bin/raygrain report $(STUDIES:%=$(STUDY)/%) --out $(STUDY)/report.html --markdown $(STUDY)/report.md
@@ -101,6 +101,10 @@ release-test: pages-for-tests
 pages-for-tests:
 	@scripts/install-dependencies.sh browser && $(MAKE) --no-print-directory viewer \
 	   || echo "The viewer's page cannot be built or shown here: its test is skipped."
+
+pages-if-possible:
+	@$(MAKE) --no-print-directory viewer report-page \
+	   || echo "The interactive pages cannot be built here: reports are static, and raygrain view lacks its page."
 
 test-full: full-dependencies ## all of it: ThreadSanitizer, Clang, coverage, clang-tidy, the full ray counts
 	@$(MAKE) --no-print-directory check-format
@@ -147,7 +151,7 @@ tidy:            ## clang-tidy on the library and the program
 	@$(call PRESET,clang)
 	@scripts/sources.sh | grep -E '^(src|cli)/.*\.cpp$$' | xargs -P $(JOBS) -n 4 clang-tidy -p build/clang --quiet 2>/dev/null
 
-install: build   ## install into PREFIX (default /usr/local)
+install: build pages-if-possible ## install into PREFIX (default /usr/local)
 	@cmake --install $(RELEASE) --prefix $(or $(PREFIX),/usr/local)
 
 clean:           ## remove all builds

@@ -130,6 +130,9 @@ std::string trace_json(const Options& options, const Scene& scene, const Traced&
               {"trace_seconds", traced.seconds},
               {"counters",
                {{"invalid_rays", c.invalid_rays},
+                {"covered", c.covered},
+                {"columns", c.columns},
+                {"cones", c.cones},
                 {"areas_tested", c.areas_tested},
                 {"areas_serving", c.areas_serving},
                 {"local_searches", c.local_searches},
@@ -149,6 +152,7 @@ std::string trace_text(const Options& options, const Scene& scene, size_t areas,
   line("rays", traced.hits.size());
   line("hits", traced.hit_count);
   line("invalid rays (misses)", c.invalid_rays);
+  line("answered by the coverage of an area", c.covered);
   line("areas asked", c.areas_tested);
   line("areas that serve", c.areas_serving);
   line("searches of local trees", c.local_searches);

@@ -4,6 +4,8 @@
 add_library(raygrain_options INTERFACE)
 target_compile_features(raygrain_options INTERFACE cxx_std_20)
 target_compile_options(raygrain_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off)
+# GCC 12 leaves out the rounding to float where it makes vectors of neighbouring double -> float -> double conversions.
+target_compile_options(raygrain_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
 if(RAYGRAIN_SANITIZE)
   target_compile_options(raygrain_options INTERFACE -fsanitize=${RAYGRAIN_SANITIZE} -fno-omit-frame-pointer
                                                    -fno-sanitize-recover=all)

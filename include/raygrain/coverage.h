@@ -49,8 +49,8 @@ class Coverage {
   /// Throws Error: kBadArea for a bad area, kUsage for options out of range or an instruction set that this CPU lacks.
   Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea& area, const CoverageOptions& options = {});
 
-  /// False where the area cannot be covered (triangles between the eye and the near plane, or none at all): no ray is
-  /// answered then.
+  /// False where the area cannot be covered (triangles between the eye and the near plane, large triangles in many
+  /// layers, or none at all): no ray is answered then.
   bool is_useful() const;
 
   /// 1 for rays of this direction against the light's (towards it), -1 for the light's own, 0 for others and for eyes.

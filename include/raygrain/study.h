@@ -146,6 +146,8 @@ struct StudyGrid {
   /// Rows to leave out; empty: none.
   std::function<bool(const StudyScene&, const StudyArea&, const StudyRecipe&, const StudyRays&)> leave_out = {};
   std::vector<std::string> missing = {};
+  /// Text of what else decides the numbers, like a file of measures: a run resumes only where it is the same.
+  std::string source = {};
 };
 
 /// One task per row of the grid. Throws Error (kUsage) for a grid without scenes, recipes, rays, seeds or repeats,

@@ -1,6 +1,9 @@
 // Grids of trees as studies.
 #include <algorithm>
+#include <initializer_list>
 #include <set>
+
+#include <fmt/format.h>
 
 #include "raygrain/analyze.h"
 #include "raygrain/compare.h"
@@ -9,6 +12,7 @@
 #include "raygrain/study.h"
 
 #include "base/timer.h"
+#include "io/crc32.h"
 #include "study/frame_row.h"
 #include "study/scene_pool.h"
 #include "study/tree_row.h"
@@ -102,11 +106,50 @@ void check_grid(const StudyGrid& grid) {
     for (const StudyArea& area : scene.areas) validate(area.area, scene.name + ' ' + area.variant);
 }
 
-/// What decides the numbers and stands in no key.
+void put(std::string& text, std::initializer_list<double> numbers) {
+  for (const double number : numbers) text += fmt::format(" {}", number);
+}
+
+void put(std::string& text, const Recipe& recipe) {
+  const PaperParameters& p = recipe.parameters;
+  text += ' ' + recipe_name(recipe);
+  put(text, {p.max_leaf_cost, p.max_leaf_area, p.max_leaf_hit_probability, p.split_plane_quality_threshold,
+             p.acceptable_ratio, p.excellent_ratio});
+  for (const uint32_t count : {p.max_triangles_per_leaf, p.max_levels, p.bins, p.max_non_fallback_levels})
+    text += ' ' + std::to_string(count);
+}
+
+void put(std::string& text, const InfluenceArea& area) {
+  const auto vectors = [&](std::initializer_list<Vec3> all) {
+    for (const Vec3 v : all) put(text, {v.x, v.y, v.z});
+  };
+  put(text, {area.tolerance});
+  if (const auto* plane = std::get_if<PlaneArea>(&area.shape)) {
+    vectors({plane->center, plane->direction, plane->up});
+    put(text, {plane->half_width, plane->half_height, plane->depth});
+  } else {
+    const auto& point = std::get<PointArea>(area.shape);
+    vectors({point.eye, point.forward, point.up});
+    put(text, {point.fov_x, point.fov_y, point.near_z, point.far_z});
+  }
+}
+
+/// What decides the numbers and stands in no key: as a checksum, but for what people may want to read.
 std::string identity_of(const StudyGrid& grid) {
-  std::string text = "global " + recipe_name(grid.global);
-  for (const StudyRays& rays : grid.rays) text += ", " + rays.name + ' ' + std::to_string(rays.count);
-  return text;
+  std::string text = grid.source;
+  for (const StudyRecipe& recipe : grid.recipes) {
+    put(text, recipe.recipe);
+    put(text, {double{recipe.reinsert}, double{recipe.in_frame}, double{recipe.visible}});
+  }
+  for (const StudyScene& scene : grid.scenes)
+    for (const StudyArea& area : scene.areas) put(text, area.area);
+  put(text, {grid.costs.inner, grid.costs.triangle});
+  std::string identity = "global " + recipe_name(grid.global);
+  for (const StudyRays& rays : grid.rays) {
+    identity += ", " + rays.name + ' ' + std::to_string(rays.count);
+    put(text, {static_cast<double>(rays.spread)});
+  }
+  return identity + ", grid " + std::to_string(crc32(text));
 }
 
 /// Area and heuristics must fit each other before anything runs.

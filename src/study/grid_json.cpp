@@ -132,13 +132,15 @@ MeasureEntry read_measure(const JsonReader& item) {
 }  // namespace
 
 StudyGrid load_study_grid(const std::string& path, const StudySources& sources) {
-  const JsonValue value = parse_json(path, read_whole_file(path));
+  const std::string text = read_whole_file(path);
+  const JsonValue value = parse_json(path, text);
   const JsonReader file(value, path);
   file.expect_keys(
       Keys{"format", "version", "name", "scenes", "recipes", "rays", "seeds", "repeats", "global", "measures"});
   check_format(file);
   StudyGrid grid;
   grid.name = file.at("name").text();
+  grid.source = text + sources.scenes;
   if (const auto measures = file.find("measures"))
     for (const JsonReader& item : measures->items()) grid.registry.measures.push_back(read_measure(item));
   for (const JsonReader& item : file.at("scenes").items()) {

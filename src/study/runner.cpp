@@ -17,6 +17,9 @@ namespace {
 using study::Journal;
 
 void check_keys(const Study& study) {
+  if (study.tasks.empty())
+    throw Error(ErrorCode::kUsage, study.name, "has no rows",
+                study.missing.empty() ? "Check the names of scenes" : study.missing.front());
   std::set<StudyKey> keys;
   for (const StudyTask& task : study.tasks)
     if (!keys.insert(task.key).second)

@@ -1,6 +1,7 @@
 // From a mesh and an area to the grid: tiles of about equal numbers of triangles' places, each cut into as many cells
 // as it has use for.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 
@@ -121,14 +122,14 @@ class Builder {
 
   void run(double near_z) {
     near_z_ = near_z;
-    if (!choose_triangles()) return;
-    choose_tiles();
+    if (!choose_triangles() || !choose_tiles()) return;
     neighbours_ = find_neighbours(*grid_.mesh, threads_);
     std::vector<Row> rows(grid_.tiles_y);
     parallel_for(grid_.tiles_y, 1, threads_, [&](size_t begin, size_t end) {
       SheetFinder sheets(neighbours_, grid_.mesh->triangle_count());
       for (size_t y = begin; y < end; ++y) build_row(y, sheets, rows[y]);
     });
+    if (is_too_much(entries_)) return grid_.tiles.clear();
     gather(rows);
   }
 
@@ -158,7 +159,13 @@ class Builder {
     return !ids_.empty() && grid_.near_triangles.size() <= kMostNearTriangles;
   }
 
-  void choose_tiles() {
+  /// Where large triangles lie over each other in many layers, cells would list them all: such scenes stay uncovered.
+  /// What is counted does not depend on threads, and neither does the verdict: work ends early only where it is
+  /// exceeded.
+  bool is_too_much(uint64_t entries) const { return entries > 64 * uint64_t{ids_.size()} + (uint64_t{1} << 20); }
+
+  /// False where tiles would hold too much.
+  bool choose_tiles() {
     const double width = static_cast<double>(grid_.x_hi) - grid_.x_lo,
                  height = static_cast<double>(grid_.y_hi) - grid_.y_lo;
     const double wanted = std::max(1.0, static_cast<double>(ids_.size()) / density_.triangles_per_tile);
@@ -167,7 +174,7 @@ class Builder {
     edge_ = 1 / static_cast<double>(grid_.tiles_per_unit);
     grid_.tiles_x = static_cast<uint32_t>(std::ceil(width / edge_));
     grid_.tiles_y = static_cast<uint32_t>(std::ceil(height / edge_));
-    sort_into_tiles();
+    return sort_into_tiles();
   }
 
   static uint32_t cell_at(double position, uint32_t count) {
@@ -196,14 +203,19 @@ class Builder {
           visit(y * grid_.tiles_x + x);
   }
 
-  void sort_into_tiles() {
+  bool sort_into_tiles() {
     begin_.assign(size_t{grid_.tiles_x} * grid_.tiles_y + 1, 0);
-    for (const uint32_t id : ids_) visit_tiles(id, [&](uint32_t tile) { ++begin_[tile + 1]; });
+    uint64_t total = 0;
+    for (const uint32_t id : ids_) {
+      visit_tiles(id, [&](uint32_t tile) { ++begin_[tile + 1], ++total; });
+      if (is_too_much(total) || total > 0xffffffffu) return false;
+    }
     for (size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
     members_.resize(begin_.back());
     std::vector<uint32_t> next(begin_.begin(), begin_.end() - 1);
     for (const uint32_t id : ids_) visit_tiles(id, [&](uint32_t tile) { members_[next[tile]++] = id; });
     grid_.tiles.resize(size_t{grid_.tiles_x} * grid_.tiles_y);
+    return true;
   }
 
   void build_row(size_t y, SheetFinder& sheets, Row& row) {
@@ -228,19 +240,23 @@ class Builder {
 
     std::vector<std::vector<InCell>> lists(size_t{across} * across);
     for (uint32_t slot = 0; slot < seen.size(); ++slot) {
+      if (is_too_much(entries_)) return;
       const SeenTriangle& one = seen[slot];
       const double room = 2 * one.margin;
       const Range columns{cell_at((one.x_lo - room - x0) / width, across),
                           cell_at((one.x_hi + room - x0) / width, across)};
       const Range lines{cell_at((one.y_lo - room - y0) / width, across),
                         cell_at((one.y_hi + room - y0) / width, across)};
+      uint64_t entries = 0;
       for (uint32_t y = lines.lo; y <= lines.hi; ++y)
         for (uint32_t x = columns.lo; x <= columns.hi; ++x) {
           const CellSquare cell = square(x, y);
           if (!one.may_touch(cell.x, cell.y, cell.half)) continue;
           const double highest = one.highest(cell.x, cell.y, cell.half), lowest = one.lowest(cell.x, cell.y, cell.half);
           lists[size_t{y} * across + x].push_back({static_cast<float>(highest), static_cast<float>(lowest), slot});
+          ++entries;
         }
+      entries_ += entries;
     }
 
     std::vector<float> covers(lists.size());
@@ -300,10 +316,10 @@ class Builder {
     std::vector<uint32_t> number(grid_.mesh->triangle_count(), kNoTriangle);
     size_t cells = 0, references = 0;
     for (const Row& row : rows) cells += row.cells.size(), references += row.references.size();
-    grid_.cells.reserve(cells + 1);
-    grid_.references.reserve(references);
     if (references > 0xffffffffu || cells > 0xffffffffu)
       throw Error(ErrorCode::kLimit, "coverage", "more than 2^32 cells or references");
+    grid_.cells.reserve(cells + 1);
+    grid_.references.reserve(references);
     std::vector<uint32_t> used;
     uint32_t tile = 0;
     for (Row& row : rows) {
@@ -341,6 +357,7 @@ class Builder {
   const CoverageDensity& density_;
   const unsigned threads_;
   double near_z_ = 0, edge_ = 1;
+  std::atomic<uint64_t> entries_ = 0;  // of all cells so far
   std::vector<uint32_t> ids_, begin_, members_;
   std::vector<std::array<uint32_t, 3>> neighbours_;
 };

@@ -184,6 +184,17 @@ TEST(RayFrame, RaysOfAnAreaAreColumns) {
   });
 }
 
+// A compiler that leaves out the rounding makes other frames than one that does not.
+TEST(RayFrame, CentersOfParallelRaysAreFloats) {
+  for_frames(20, [](const RayFrame& frame, const AreaGeometry&, Random&) {
+    if (frame.is_projective()) return;
+    for (int axis = 0; axis < 3; ++axis) {
+      const volatile float rounded = static_cast<float>(frame.center[axis]);
+      ASSERT_EQ(frame.center[axis], static_cast<double>(rounded));
+    }
+  });
+}
+
 TEST(RayFrame, TheDomainHoldsTheRegion) {
   for_frames(100, [&](const RayFrame& frame, const AreaGeometry& area, Random& random) {
     for (int i = 0; i < 20; ++i)

@@ -215,6 +215,21 @@ TEST(Coverage, AgreesWithTheOracleAlongADirection) {
   EXPECT_GT(nearest.hits, nearest.answered / 4);
 }
 
+// Each cell would list thousands of triangles.
+TEST(Coverage, LeavesManyLayersOfLargeTrianglesUncovered) {
+  Random random(7);
+  const auto mesh = std::make_shared<TriangleMesh>();
+  const auto coordinate = [&] { return static_cast<float>(random.uniform()); };
+  for (uint32_t i = 0; i < 20'000; ++i) {
+    for (int corner = 0; corner < 3; ++corner) mesh->vertices.push_back({coordinate(), coordinate(), coordinate()});
+    mesh->triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const Vec3 light{0.3f, -1, 0.1f};
+  const Coverage coverage(mesh, directional_light_area("sun", light, mesh_bounds(*mesh)));
+  EXPECT_FALSE(coverage.is_useful());
+  EXPECT_FALSE(coverage.occluded(Ray{{0.5f, 0.5f, 0.5f}, -light}));
+}
+
 TEST(Coverage, AgreesWithTheOracleAboutAPoint) {
   Tally any, nearest;
   for_families(2, [&](const std::shared_ptr<const TriangleMesh>& mesh, uint64_t seed) {

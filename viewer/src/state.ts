@@ -124,11 +124,14 @@ const LIMITS: Partial<Record<Key, [number, number]>> = {
   focus: [0, 1],
 };
 
+const WHOLE: Key[] = ['rays', 'section', 'up', 'costSize', 'level', 'focus'];
+
 function isLegal(key: Key, value: State[Key]): boolean {
   const words = WORDS[key];
   if (words) return words.includes(value as string);
   if (key === 'seed') return /^\d{1,20}$/.test(value as string);
   const limits = LIMITS[key];
+  if (WHOLE.includes(key) && !Number.isInteger(value)) return false;
   return limits ? (value as number) >= limits[0] && (value as number) <= limits[1] : true;
 }
 

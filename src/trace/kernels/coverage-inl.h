@@ -297,12 +297,14 @@ Order find_order(const CoverageGrid& grid, const ColumnBatch& batch, const Quest
   if (!batch.sorted || batch.count <= 2 * kProbes * kBlock) return Order::kAsGiven;
   size_t same = 0, open = 0;
   std::vector<uint32_t> unwanted;
+  const CoverageCounters before = question.counters;
   for (size_t probe = 0; probe < kProbes; ++probe) {
     load(batch, (batch.count - kBlock) / kProbes * probe, kBlock, asking.block);
     place(grid, batch.rays.kind, kBlock, asking.block);
     for (size_t i = 1; i < kBlock; ++i) same += asking.block.tile[i] == asking.block.tile[i - 1];
     open += ask_cells(grid, batch.rays.kind, kBlock, question, asking, unwanted);  // the answers are right
   }
+  question.counters = before;  // the rays are asked again
   if (2 * same > kProbes * kBlock) return Order::kAsGiven;
   return 2 * open < kProbes * kBlock ? Order::kWaitingByTile : Order::kPointsByTile;
 }
