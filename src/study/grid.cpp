@@ -139,7 +139,7 @@ std::string identity_of(const StudyGrid& grid) {
   std::string text = grid.source;
   for (const StudyRecipe& recipe : grid.recipes) {
     put(text, recipe.recipe);
-    put(text, {double{recipe.reinsert}, double{recipe.in_frame}, double{recipe.visible}});
+    for (const bool flag : {recipe.reinsert, recipe.in_frame, recipe.visible}) text += flag ? " yes" : " no";
   }
   for (const StudyScene& scene : grid.scenes)
     for (const StudyArea& area : scene.areas) put(text, area.area);
