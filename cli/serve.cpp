@@ -2,7 +2,9 @@
 
 #include <cerrno>
 #include <cstring>
+#include <memory>
 #include <string_view>
+#include <thread>
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
@@ -81,8 +83,8 @@ void answer(const Socket& browser, const std::string& page) {
   ::setsockopt(browser.handle(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   ::setsockopt(browser.handle(), SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
   const std::string request = read_request(browser);
-  const bool head = request.starts_with("HEAD / ");
-  const bool found = head || request.starts_with("GET / ");
+  const bool head = request.starts_with("HEAD / ") || request.starts_with("HEAD /?");
+  const bool found = head || request.starts_with("GET / ") || request.starts_with("GET /?");
   const std::string_view body = found ? std::string_view(page) : std::string_view("There is only /\n");
   send_all(browser, fmt::format("HTTP/1.1 {}\r\nContent-Type: text/{}; charset=utf-8\r\nContent-Length: {}\r\n"
                                 "Cache-Control: no-store\r\nConnection: close\r\n\r\n",
@@ -96,10 +98,11 @@ void serve_page(const std::string& page, uint16_t port, const std::function<void
   const Socket listener(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const uint16_t chosen = listen_here(listener, port);
   ready(fmt::format("http://127.0.0.1:{}/", chosen));
+  const auto shared = std::make_shared<const std::string>(page);
   while (true) {
-    const Socket browser(::accept4(listener.handle(), nullptr, nullptr, SOCK_CLOEXEC));
-    if (browser.handle() >= 0)
-      answer(browser, page);
+    const auto browser = std::make_shared<const Socket>(::accept4(listener.handle(), nullptr, nullptr, SOCK_CLOEXEC));
+    if (browser->handle() >= 0)  // a thread each: browsers open spare connections and say nothing for long
+      std::thread([browser, shared] { answer(*browser, *shared); }).detach();
     else if (errno != EINTR && errno != ECONNABORTED)
       fail_to_listen(chosen);
   }

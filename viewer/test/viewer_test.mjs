@@ -4,6 +4,7 @@
 import assert from 'node:assert/strict';
 import { spawn, spawnSync } from 'node:child_process';
 import { existsSync, mkdirSync, rmSync, statSync, writeFileSync } from 'node:fs';
+import { connect } from 'node:net';
 import { join } from 'node:path';
 import { WITHOUT_GPU } from '../../scripts/browser.mjs';
 import { choose, desktop, folder, here, makePage, program, rayNumbers, redrawn, run, settled, shot, textOf, visit } from './helpers.mjs';
@@ -54,7 +55,11 @@ async function checkServe() {
       });
       server.on('exit', () => fail(new Error('the server ended')));
     });
+    const silent = connect(Number(new URL(address).port), '127.0.0.1');  // as browsers' spare connections are
+    const asked = performance.now();
     const page = await fetch(address);
+    assert.ok(performance.now() - asked < 5000, 'a silent connection keeps nobody waiting');
+    silent.destroy();
     assert.equal(page.status, 200);
     assert.match(await page.text(), /raygrain-view/);
     assert.equal((await fetch(`${address}other`)).status, 404);
