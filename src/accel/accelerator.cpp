@@ -15,6 +15,7 @@
 #include "accel/foreign.h"
 #include "accel/search.h"
 #include "base/parallel.h"
+#include "base/sizes.h"
 
 namespace raygrain {
 
@@ -83,12 +84,6 @@ std::vector<SearchTree> make_searches(const TriangleMesh& mesh, std::span<const 
     if (local.in_ray_space && traversal == Traversal::kWide) searches.back().add_ray_space(*local.in_ray_space);
   }
   return searches;
-}
-
-void check_sizes(size_t rays, size_t answers) {
-  if (rays != answers)
-    throw Error(ErrorCode::kUsage, "Accelerator",
-                std::to_string(rays) + " rays and room for " + std::to_string(answers) + " answers");
 }
 
 TraceCounters* local_counters(AcceleratorCounters* counters) {
@@ -261,7 +256,7 @@ void Accelerator::Parts::answer_array(std::span<const Ray> rays, std::span<Answe
 
 void Accelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits, unsigned threads,
                             AcceleratorCounters* counters) const {
-  check_sizes(rays.size(), hits.size());
+  check_sizes("Accelerator", rays.size(), hits.size());
   const std::optional<WideBvh>& global = parts_->global.wide();
   if (counters != nullptr || !global)
     return for_chunks(rays.size(), threads, counters,
@@ -274,7 +269,7 @@ void Accelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits, unsi
 
 void Accelerator::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, unsigned threads,
                            AcceleratorCounters* counters) const {
-  check_sizes(rays.size(), flags.size());
+  check_sizes("Accelerator", rays.size(), flags.size());
   const std::optional<WideBvh>& global = parts_->global.wide();
   if (counters != nullptr || !global)
     return for_chunks(rays.size(), threads, counters,

@@ -7,16 +7,11 @@
 #include "raygrain/error.h"
 
 #include "base/parallel.h"
+#include "base/sizes.h"
 
 namespace raygrain {
 
 namespace {
-
-void check_sizes(size_t rays, size_t answers) {
-  if (rays != answers)
-    throw Error(ErrorCode::kUsage, "Accelerator",
-                std::to_string(rays) + " rays and room for " + std::to_string(answers) + " answers");
-}
 
 /// Rays of which some still wait for their answer.
 class Waiting {
@@ -80,7 +75,7 @@ std::vector<const Coverage*> about(std::span<const Coverage> coverages, Vec3 eye
 
 void Accelerator::occluded(std::span<const Vec3> origins, Vec3 direction, std::span<uint8_t> flags,
                            unsigned threads) const {
-  check_sizes(origins.size(), flags.size());
+  check_sizes("Accelerator", origins.size(), flags.size());
   Waiting waiting(origins.size());
   for (const Coverage& coverage : coverages()) {
     if (waiting.is_empty()) return;
@@ -99,7 +94,7 @@ void Accelerator::occluded(std::span<const Vec3> origins, Vec3 direction, std::s
 
 void Accelerator::intersect(std::span<const Vec3> origins, Vec3 direction, std::span<Hit> hits,
                             unsigned threads) const {
-  check_sizes(origins.size(), hits.size());
+  check_sizes("Accelerator", origins.size(), hits.size());
   Waiting waiting(origins.size());
   for (const Coverage& coverage : coverages()) {
     if (waiting.is_empty()) return;
@@ -118,7 +113,7 @@ void Accelerator::intersect(std::span<const Vec3> origins, Vec3 direction, std::
 
 void Accelerator::occluded_towards(std::span<const Vec3> origins, Vec3 point, std::span<uint8_t> flags,
                                    unsigned threads) const {
-  check_sizes(origins.size(), flags.size());
+  check_sizes("Accelerator", origins.size(), flags.size());
   Waiting waiting(origins.size());
   const std::vector<const Coverage*> coverages = about(this->coverages(), point);
   const auto ask = [&](const Coverage& coverage, std::span<const uint32_t> numbers, std::vector<uint32_t>& rest) {
@@ -139,7 +134,7 @@ void Accelerator::occluded_towards(std::span<const Vec3> origins, Vec3 point, st
 
 void Accelerator::intersect_from(Vec3 eye, std::span<const Vec3> directions, std::span<Hit> hits,
                                  unsigned threads) const {
-  check_sizes(directions.size(), hits.size());
+  check_sizes("Accelerator", directions.size(), hits.size());
   Waiting waiting(directions.size());
   const std::vector<const Coverage*> coverages = about(this->coverages(), eye);
   const auto ask = [&](const Coverage& coverage, std::span<const uint32_t> numbers, std::vector<uint32_t>& rest) {

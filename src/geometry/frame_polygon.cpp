@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/cut_polygon.h"
+
 namespace raygrain {
 namespace {
 
@@ -38,24 +40,6 @@ double largest_component(Vec3d v) {
 Vec3d to_local(const RayFrame& frame, Vec3d point) {
   const Vec3d v = point - frame.center;
   return {dot(frame.rows[0], v), dot(frame.rows[1], v), dot(frame.rows[2], v)};
-}
-
-void cut(FramePolygon& polygon, int axis, double limit, double sign) {
-  const auto is_inside = [&](Vec3d p) { return sign * p[axis] <= sign * limit; };
-  bool all_inside = true;
-  for (size_t i = 0; i < polygon.count; ++i) all_inside = all_inside && is_inside(polygon.corners[i]);
-  if (all_inside) return;
-  FramePolygon result;
-  result.padding = polygon.padding;
-  for (size_t i = 0; i < polygon.count; ++i) {
-    const Vec3d a = polygon.corners[i], b = polygon.corners[i + 1 < polygon.count ? i + 1 : 0];
-    if (is_inside(a)) result.push(a);
-    if (is_inside(a) == is_inside(b)) continue;
-    Vec3d crossing = a + (b - a) * ((limit - a[axis]) / (b[axis] - a[axis]));
-    crossing[axis] = limit;
-    result.push(crossing);
-  }
-  polygon = result;
 }
 
 FramePolygon frame_polygon(const RayFrame& frame, Vec3 a, Vec3 b, Vec3 c) {

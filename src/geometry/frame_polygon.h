@@ -26,7 +26,4 @@ struct FramePolygon {
 /// Of the whole triangle; of the part with z >= near_z for projective frames (empty where nothing is there).
 FramePolygon frame_polygon(const RayFrame& frame, Vec3 a, Vec3 b, Vec3 c);
 
-/// Cuts off what has sign * x[axis] > sign * limit.
-void cut(FramePolygon& polygon, int axis, double limit, double sign);
-
 }  // namespace raygrain

@@ -5,6 +5,7 @@
 
 #include "raygrain/error.h"
 
+#include "geometry/cut_polygon.h"
 #include "geometry/frame_polygon.h"
 #include "geometry/rounding.h"
 

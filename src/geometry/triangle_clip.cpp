@@ -6,6 +6,9 @@
 
 #include "raygrain/mesh.h"
 
+#include "geometry/cut_polygon.h"
+#include "geometry/rounding.h"
+
 namespace raygrain {
 
 namespace {
@@ -19,33 +22,6 @@ struct Polygon {
     if (count < corners.size()) corners[count++] = p;
   }
 };
-
-/// The part with sign * x[axis] <= sign * limit.
-void cut(Polygon& polygon, int axis, double limit, double sign) {
-  const auto is_inside = [&](Vec3d p) { return sign * p[axis] <= sign * limit; };
-  bool all_inside = true;
-  for (size_t i = 0; i < polygon.count; ++i) all_inside = all_inside && is_inside(polygon.corners[i]);
-  if (all_inside) return;
-  Polygon result;
-  for (size_t i = 0; i < polygon.count; ++i) {
-    const Vec3d a = polygon.corners[i], b = polygon.corners[i + 1 < polygon.count ? i + 1 : 0];
-    if (is_inside(a)) result.push(a);
-    if (is_inside(a) == is_inside(b)) continue;
-    Vec3d crossing = a + (b - a) * ((limit - a[axis]) / (b[axis] - a[axis]));
-    crossing[axis] = limit;
-    result.push(crossing);
-  }
-  polygon = result;
-}
-
-float float_below(double x) {
-  const auto rounded = static_cast<float>(x);
-  return static_cast<double>(rounded) <= x ? rounded : std::nextafter(rounded, -kInf);
-}
-
-float float_above(double x) {
-  return -float_below(-x);
-}
 
 }  // namespace
 

@@ -8,6 +8,7 @@
 #include "raygrain/error.h"
 
 #include "base/parallel.h"
+#include "base/sizes.h"
 #include "base/timer.h"
 #include "trace/coverage_grid.h"
 #include "trace/kernels/coverage_kernels.h"
@@ -123,12 +124,6 @@ void in_parts(const CoverageGrid& grid, std::optional<bool> sorts, const ColumnR
   }
 }
 
-void check_sizes(size_t rays, size_t answers) {
-  if (rays != answers)
-    throw Error(ErrorCode::kUsage, "Coverage",
-                std::to_string(rays) + " rays and room for " + std::to_string(answers) + " answers");
-}
-
 }  // namespace
 
 void CoverageCounters::add(const CoverageCounters& other) {
@@ -187,7 +182,7 @@ bool Coverage::is_useful() const {
 void Coverage::occluded(std::span<const Vec3> origins, Vec3 direction, std::span<uint8_t> flags,
                         std::vector<uint32_t>& rest, std::span<const uint32_t> subset, unsigned threads,
                         CoverageCounters* counters) const {
-  check_sizes(origins.size(), flags.size());
+  check_sizes("Coverage", origins.size(), flags.size());
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != 1) return pass_on(origins.size(), subset, rest);
   in_parts(grid, data_->sorts, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
@@ -199,7 +194,7 @@ void Coverage::occluded(std::span<const Vec3> origins, Vec3 direction, std::span
 void Coverage::occluded_towards(std::span<const Vec3> origins, Vec3 point, std::span<uint8_t> flags,
                                 std::vector<uint32_t>& rest, std::span<const uint32_t> subset, unsigned threads,
                                 CoverageCounters* counters) const {
-  check_sizes(origins.size(), flags.size());
+  check_sizes("Coverage", origins.size(), flags.size());
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || !grid.map.is_eye || point != grid.map.center) return pass_on(origins.size(), subset, rest);
   in_parts(grid, data_->sorts, {ColumnRays::Kind::kTowards, point, origins.data()}, origins.size(), subset, rest,
@@ -211,7 +206,7 @@ void Coverage::occluded_towards(std::span<const Vec3> origins, Vec3 point, std::
 void Coverage::intersect(std::span<const Vec3> origins, Vec3 direction, std::span<Hit> hits,
                          std::vector<uint32_t>& rest, std::span<const uint32_t> subset, unsigned threads,
                          CoverageCounters* counters) const {
-  check_sizes(origins.size(), hits.size());
+  check_sizes("Coverage", origins.size(), hits.size());
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != -1) return pass_on(origins.size(), subset, rest);
   in_parts(grid, data_->sorts, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
@@ -223,7 +218,7 @@ void Coverage::intersect(std::span<const Vec3> origins, Vec3 direction, std::spa
 void Coverage::intersect_from(Vec3 eye, std::span<const Vec3> directions, std::span<Hit> hits,
                               std::vector<uint32_t>& rest, std::span<const uint32_t> subset, unsigned threads,
                               CoverageCounters* counters) const {
-  check_sizes(directions.size(), hits.size());
+  check_sizes("Coverage", directions.size(), hits.size());
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || !grid.map.is_eye || eye != grid.map.center) return pass_on(directions.size(), subset, rest);
   in_parts(grid, data_->sorts, {ColumnRays::Kind::kFrom, eye, directions.data()}, directions.size(), subset, rest,

@@ -123,7 +123,7 @@ class Builder {
   void run(double near_z) {
     near_z_ = near_z;
     if (!choose_triangles() || !choose_tiles()) return;
-    neighbours_ = find_neighbours(*grid_.mesh, threads_);
+    neighbours_ = find_neighbours(*grid_.mesh);
     std::vector<Row> rows(grid_.tiles_y);
     parallel_for(grid_.tiles_y, 1, threads_, [&](size_t begin, size_t end) {
       SheetFinder sheets(neighbours_, grid_.mesh->triangle_count());

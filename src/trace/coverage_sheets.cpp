@@ -28,7 +28,7 @@ std::vector<uint32_t> weld(const std::vector<Vec3>& vertices) {
 
 }  // namespace
 
-std::vector<std::array<uint32_t, 3>> find_neighbours(const TriangleMesh& mesh, unsigned) {
+std::vector<std::array<uint32_t, 3>> find_neighbours(const TriangleMesh& mesh) {
   struct Edge {
     uint64_t ends;
     uint32_t triangle, number;

@@ -14,7 +14,7 @@ inline constexpr uint32_t kNoNeighbour = 0xffffffffu;
 
 /// Per triangle and edge (from corner i to corner i + 1): the one other triangle with the same two points at its ends,
 /// or kNoNeighbour where there is none or more than one.
-std::vector<std::array<uint32_t, 3>> find_neighbours(const TriangleMesh& mesh, unsigned threads);
+std::vector<std::array<uint32_t, 3>> find_neighbours(const TriangleMesh& mesh);
 
 /// A triangle that a cell may meet, with its least and greatest depth there.
 struct InCell {

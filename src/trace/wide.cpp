@@ -5,6 +5,7 @@
 #include "raygrain/error.h"
 
 #include "base/parallel.h"
+#include "base/sizes.h"
 #include "trace/kernels/kernels.h"
 #include "trace/wide_tree.h"
 
@@ -25,12 +26,6 @@ const Kernels& kernels_of(Isa isa) {
   if (found == nullptr)
     throw Error(ErrorCode::kUsage, "WideOptions::isa", "this CPU does not offer '" + std::string(name(isa)) + "'");
   return *found;
-}
-
-void check_sizes(size_t rays, size_t answers) {
-  if (rays != answers)
-    throw Error(ErrorCode::kUsage, "WideBvh",
-                std::to_string(rays) + " rays and room for " + std::to_string(answers) + " answers");
 }
 
 }  // namespace
@@ -58,7 +53,7 @@ bool WideBvh::occluded(const Ray& ray, const SearchOptions& options) const {
 }
 
 void WideBvh::intersect(std::span<const Ray> rays, std::span<Hit> hits, unsigned threads) const {
-  check_sizes(rays.size(), hits.size());
+  check_sizes("WideBvh", rays.size(), hits.size());
   if (data_->tree.is_empty()) return std::fill(hits.begin(), hits.end(), Hit{});
   parallel_for(rays.size(), kRaysPerTask, threads, [&](size_t begin, size_t end) {
     data_->kernels->nearest_of_many(data_->tree, rays.data() + begin, hits.data() + begin, end - begin);
@@ -66,7 +61,7 @@ void WideBvh::intersect(std::span<const Ray> rays, std::span<Hit> hits, unsigned
 }
 
 void WideBvh::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, unsigned threads) const {
-  check_sizes(rays.size(), flags.size());
+  check_sizes("WideBvh", rays.size(), flags.size());
   if (data_->tree.is_empty()) return std::fill(flags.begin(), flags.end(), uint8_t{0});
   parallel_for(rays.size(), kRaysPerTask, threads, [&](size_t begin, size_t end) {
     data_->kernels->any_of_many(data_->tree, rays.data() + begin, flags.data() + begin, end - begin);

@@ -26,7 +26,6 @@ using FrameRefTag = hn::RebindToUnsigned<FrameTag>;
 using FrameVec = hn::Vec<FrameTag>;
 using FrameMask = hn::Mask<FrameTag>;
 constexpr size_t kFrameLanes = hn::MaxLanes(FrameTag());
-constexpr size_t kFrameParts = kFrameWidth / kFrameLanes;
 
 HWY_INLINE FrameVec all(float x) {
   return hn::Set(FrameTag(), x);
