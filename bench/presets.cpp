@@ -43,7 +43,7 @@ BuildRow measure_build(const BenchScene& scene, Quality quality, unsigned thread
     row.embree_bytes = theirs.bytes;
     const Timer timer;
     const Bvh binary = build_preset(scene.mesh, quality, threads);
-    const WideBvh tree(binary, scene.mesh);
+    const WideBvh tree(binary, scene.mesh, {.threads = threads});
     row.raygrain_seconds = std::min(row.raygrain_seconds, timer.seconds());
     row.raygrain_bytes = tree.memory_bytes();
     if (round == 0) row.sah_cost = analyze(binary, RayMeasure()).estimated_cost;

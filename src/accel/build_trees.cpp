@@ -40,9 +40,9 @@ Global build_global(const TriangleMesh& mesh, const AcceleratorOptions& options,
 }  // namespace
 
 SearchTree make_search_tree(const TriangleMesh& mesh, std::shared_ptr<const Bvh> binary, const RayMeasure& measure,
-                            Traversal traversal, std::optional<Isa> isa) {
+                            Traversal traversal, std::optional<Isa> isa, unsigned threads) {
   if (traversal == Traversal::kBinary) return {mesh, std::move(binary)};
-  WideBvh wide(*binary, mesh, {.measure = measure, .isa = isa});
+  WideBvh wide(*binary, mesh, {.measure = measure, .isa = isa, .threads = threads});
   return {mesh, std::move(binary), std::move(wide)};
 }
 
@@ -77,7 +77,7 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
     LocalTree& local = trees.locals[i];
     local = build_local_tree(mesh, area, options.local, options.registry, options.membership, samples(&area),
                              {options.threads, progress.part(i + 1, 0, kBuilt)});
-    searches[i] = make_search_tree(mesh, local.tree, local.measure, options.traversal, options.isa);
+    searches[i] = make_search_tree(mesh, local.tree, local.measure, options.traversal, options.isa, options.threads);
     if (in_ray_space) {
       std::vector<uint32_t> triangles = local.tree->prims;
       std::ranges::sort(triangles);
@@ -92,7 +92,8 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
       build_local(task - 1);
     } else {
       Global global = build_global(mesh, options, samples(nullptr), progress);
-      trees.global = make_search_tree(mesh, std::move(global.tree), global.measure, options.traversal, options.isa);
+      trees.global = make_search_tree(mesh, std::move(global.tree), global.measure, options.traversal, options.isa,
+                                      options.threads);
     }
     progress.reach(task, 1);
   };

@@ -31,6 +31,6 @@ std::vector<Coverage> build_coverages(const std::shared_ptr<const TriangleMesh>&
 
 /// The form of a finished tree that rays are sent through.
 SearchTree make_search_tree(const TriangleMesh& mesh, std::shared_ptr<const Bvh> binary, const RayMeasure& measure,
-                            Traversal traversal, std::optional<Isa> isa = std::nullopt);
+                            Traversal traversal, std::optional<Isa> isa = std::nullopt, unsigned threads = 0);
 
 }  // namespace raygrain

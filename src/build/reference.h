@@ -21,11 +21,12 @@ struct alignas(16) FourFloats {
   float at[4];
 };
 
-// Tells GCC that lanes do not overlap, or it would not dare; Clang sees it.
+// Tells GCC that lanes do not overlap, or it would not dare, and that it must not unroll the loop before it makes
+// vectors of it; Clang sees both.
 #ifdef __clang__
 #define RAYGRAIN_LANES
 #else
-#define RAYGRAIN_LANES _Pragma("GCC ivdep")
+#define RAYGRAIN_LANES _Pragma("GCC ivdep") _Pragma("GCC unroll 1")
 #endif
 
 inline EightFloats lesser(const EightFloats& a, const EightFloats& b) {

@@ -39,10 +39,7 @@ ReferenceBuilder::ReferenceBuilder(const Input& input, const BuildOptions& optio
 
 bool ReferenceBuilder::serves(const Input& input, const BuildStrategy& strategy) {
   if (strategy.cost || strategy.planes || strategy.partition || strategy.stop) return false;
-  Bounds all;
-  for (const Vec3 key : input.centroids) all.extend(key);
-  for (const Bounds& box : input.bounds) all.extend(box);
-  return input.bounds.empty() || is_finite(extent(all));
+  return input.bounds.empty() || is_finite(extent(input.reach));
 }
 
 void ReferenceBuilder::fill(std::span<Reference> references, PackedBox& box, PackedBox& keys) const {

@@ -29,8 +29,7 @@ Bvh build_spatial(std::span<const Bounds> bounds, std::span<const Vec3> centroid
     throw Error(ErrorCode::kUsage, "clip", "build_spatial cannot cut primitives without a clip callback",
                 "set BuildOptions::clip, e.g. to clip_triangle_bounds of the mesh");
   std::vector<Vec3> centers;
-  const builder::Input input{bounds, builder::centroids_or_centers(bounds, centroids, centers)};
-  builder::check_input(input);
+  const builder::Input input = builder::checked_input(bounds, centroids, centers, options.threads);
   if (log) *log = {};
   const Timer timer;
   // Distances beyond float's range: no planes to cut at.

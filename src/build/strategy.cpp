@@ -33,34 +33,6 @@ std::string describe(const NodeContext& node) {
   return out.str();
 }
 
-std::span<const Vec3> centroids_or_centers(std::span<const Bounds> bounds, std::span<const Vec3> centroids,
-                                           std::vector<Vec3>& centers) {
-  if (!centroids.empty()) return centroids;
-  centers.resize(bounds.size());
-  for (size_t i = 0; i < bounds.size(); ++i) centers[i] = center(bounds[i]);
-  return centers;
-}
-
-void check_input(const Input& input) {
-  if (input.bounds.size() != input.centroids.size())
-    throw Error(
-        ErrorCode::kUsage, "centroids",
-        std::to_string(input.centroids.size()) + " centroids for " + std::to_string(input.bounds.size()) + " boxes",
-        "give one centroid per box");
-  // A tree over n primitives has up to 2n - 1 nodes.
-  if (input.bounds.size() > size_t{1} << 31)
-    throw Error(ErrorCode::kLimit, "bounds", "more primitives than 32-bit node indices can hold", "split the input");
-  for (size_t i = 0; i < input.bounds.size(); ++i) {
-    const Bounds& box = input.bounds[i];
-    if (!is_finite(box.lo) || !is_finite(box.hi) || is_empty(box))
-      throw Error(ErrorCode::kUsage, "bounds[" + std::to_string(i) + "]", "box is empty or not finite",
-                  "give each primitive a finite box");
-    if (!is_finite(input.centroids[i]))
-      throw Error(ErrorCode::kUsage, "centroids[" + std::to_string(i) + "]", "centroid is not finite",
-                  "give each primitive a finite centroid");
-  }
-}
-
 ActiveStrategy::ActiveStrategy(const BuildStrategy& strategy, const PaperParameters& parameters, const CostModel& costs)
     : strategy_(strategy),
       parameters_(parameters),

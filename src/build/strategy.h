@@ -7,21 +7,9 @@
 
 #include "raygrain/build.h"
 
+#include "build/input.h"
+
 namespace raygrain::builder {
-
-/// What every builder is given. Boxes and centroids are parallel.
-struct Input {
-  std::span<const Bounds> bounds;
-  std::span<const Vec3> centroids;
-};
-
-/// The centroids, or where there are none the centers of the boxes, which `centers` then holds.
-std::span<const Vec3> centroids_or_centers(std::span<const Bounds> bounds, std::span<const Vec3> centroids,
-                                           std::vector<Vec3>& centers);
-
-/// Throws Error kUsage unless sizes agree, boxes are finite and not empty and centroids are finite; kLimit for more
-/// primitives than node indices can name.
-void check_input(const Input& input);
 
 /// Where a heuristic failed: "node at level 3 with 17 primitives in box (0, 0, 0) to (1, 1, 1)".
 std::string describe(const NodeContext& node);

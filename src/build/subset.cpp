@@ -226,8 +226,7 @@ Bvh build_subset(std::span<const Bounds> bounds, std::span<const Vec3> centroids
                  BuildLog* log) {
   validate(options);
   std::vector<Vec3> centers;
-  const builder::Input input{bounds, builder::centroids_or_centers(bounds, centroids, centers)};
-  builder::check_input(input);
+  const builder::Input input = builder::checked_input(bounds, centroids, centers, options.threads);
   if (bounds.size() < kLeast || !builder::ReferenceBuilder::serves(input, options.strategy))
     return build_binned(bounds, input.centroids, options, log);
   if (log) *log = {};

@@ -14,8 +14,7 @@ Bvh timed_build(std::span<const Bounds> bounds, std::span<const Vec3> centroids,
                 BuildLog* log, const Build& build) {
   validate(options);
   std::vector<Vec3> centers;
-  const Input input{bounds, centroids_or_centers(bounds, centroids, centers)};
-  check_input(input);
+  const Input input = checked_input(bounds, centroids, centers, options.threads);
   if (log) *log = {};
   Laps laps(log ? &log->times : nullptr);
   Bvh bvh = build(input, laps);

@@ -103,7 +103,7 @@ void set_tree_cells(Cells& cells, const TreeTest& test, const RayMeasure& own) {
   set_ray_cells(cells, test);
   const std::vector<Ray> served = served_rays(test);
   std::vector<Hit> hits(served.size());
-  const WideBvh wide(*test.local.tree, test.scene.mesh, {.measure = own});
+  const WideBvh wide(*test.local.tree, test.scene.mesh, {.measure = own, .threads = 1});
   cells.set("ray_seconds", search_seconds(served, [&](std::span<const Ray> rays) { wide.intersect(rays, hits); }));
   cells.set("global_ray_seconds",
             search_seconds(served, [&](std::span<const Ray> rays) { test.scene.wide_global.intersect(rays, hits); }));

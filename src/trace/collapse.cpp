@@ -4,19 +4,22 @@
 #include <cmath>
 #include <vector>
 
+#include "base/parallel.h"
+#include "geometry/rounding.h"
 #include "trace/wide_plan.h"
 #include "trace/wide_tree.h"
 
 namespace raygrain {
 namespace {
 
+constexpr size_t kItemsPerTask = 4096;
+
 /// a - b in float, rounded down; exact where b is 0.
 float difference_below(float a, float b) {
   if (b == 0) return a;
   const double exact = static_cast<double>(a) - static_cast<double>(b);  // but for one rounding
   const double low = exact - 0x1p-50 * std::abs(exact);
-  const auto rounded = static_cast<float>(low);
-  return rounded <= low ? rounded : std::nextafter(rounded, -kInf);
+  return float_below(low);
 }
 float difference_above(float a, float b) {
   return -difference_below(-a, -b);
@@ -24,14 +27,16 @@ float difference_above(float a, float b) {
 
 class Collapse {
  public:
-  Collapse(const WidePlan& plan, const TriangleMesh& mesh) : plan_(plan), mesh_(mesh), refs_(plan.items().size()) {}
+  Collapse(const WidePlan& plan, const TriangleMesh& mesh, unsigned threads)
+      : plan_(plan), mesh_(mesh), threads_(threads), refs_(plan.items().size()) {}
 
   WideTree run() {
     wide_.nodes = plan_.nodes();
     wide_.leaves = plan_.leaves();
     place_center();
     wide_.memory = LineMemory(plan_.node_bytes() + plan_.leaf_bytes() + kLeafSlack);
-    for (size_t i = plan_.items().size(); i-- > 0;) plan_.items()[i].is_leaf() ? write_leaf(i) : write_node(i);
+    write_leaves();
+    write_nodes();
     return std::move(wide_);
   }
 
@@ -46,14 +51,36 @@ class Collapse {
     }
   }
 
-  void write_leaf(size_t index) {
-    ids_.clear();
-    plan_.gather(plan_.items()[index], ids_);
-    const size_t count = ids_.size(), offset = plan_.node_bytes() + plan_.items()[index].offset;
+  /// And all references, which nodes hold of their children.
+  void write_leaves() {
+    parallel_for(refs_.size(), kItemsPerTask, threads_, [&](size_t begin, size_t end) {
+      std::vector<uint32_t> ids;
+      for (size_t i = begin; i < end; ++i) {
+        const WideItem& item = plan_.items()[i];
+        if (!item.is_leaf()) {
+          refs_[i] = node_ref(item.offset);
+          continue;
+        }
+        ids.clear();
+        plan_.gather(item, ids);
+        refs_[i] = write_leaf(plan_.node_bytes() + item.offset, ids);
+      }
+    });
+  }
+
+  void write_nodes() {
+    parallel_for(refs_.size(), kItemsPerTask, threads_, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i)
+        if (const WideItem& item = plan_.items()[i]; !item.is_leaf()) write_node(item);
+    });
+  }
+
+  ChildRef write_leaf(size_t offset, std::span<const uint32_t> ids) {
+    const size_t count = ids.size();
     auto* out = new (wide_.memory.data() + offset) float[10 * count];
     float size = 0;
     for (size_t lane = 0; lane < count; ++lane) {
-      const std::array corners{mesh_.vertex(ids_[lane], 0), mesh_.vertex(ids_[lane], 1), mesh_.vertex(ids_[lane], 2)};
+      const std::array corners{mesh_.vertex(ids[lane], 0), mesh_.vertex(ids[lane], 1), mesh_.vertex(ids[lane], 2)};
       for (int axis = 0; axis < 3; ++axis) {
         const float a = corners[0][axis], b = corners[1][axis], c = corners[2][axis];
         size = std::max(size, std::max({a, b, c}) - std::min({a, b, c}));
@@ -62,13 +89,12 @@ class Collapse {
         place[3 * count] = b;
         place[6 * count] = c;
       }
-      out[9 * count + lane] = std::bit_cast<float>(ids_[lane]);
+      out[9 * count + lane] = std::bit_cast<float>(ids[lane]);
     }
-    refs_[index] = leaf_ref(offset, static_cast<uint32_t>(count), std::nextafter(size, kInf));  // whatever was rounded
+    return leaf_ref(offset, static_cast<uint32_t>(count), std::nextafter(size, kInf));  // whatever was rounded
   }
 
-  void write_node(size_t index) {
-    const WideItem& item = plan_.items()[index];
+  void write_node(const WideItem& item) {
     auto* node = new (wide_.memory.data() + item.offset) WideNode{};
     for (size_t lane = 0; lane < kWidth; ++lane) {
       const bool is_there = lane < item.children;
@@ -81,13 +107,12 @@ class Collapse {
       }
       if (is_there) node->child[lane] = refs_[child];
     }
-    refs_[index] = node_ref(item.offset);
   }
 
   const WidePlan& plan_;
   const TriangleMesh& mesh_;
+  const unsigned threads_;
   std::vector<ChildRef> refs_;  // by item
-  std::vector<uint32_t> ids_;
   WideTree wide_;
 };
 
@@ -101,7 +126,7 @@ WideTree collapse(const Bvh& tree, const TriangleMesh& mesh, const WideOptions& 
     return {};
   }
   const WidePlan plan(tree, options, form);
-  return Collapse(plan, mesh).run();
+  return Collapse(plan, mesh, options.threads).run();
 }
 
 }  // namespace raygrain

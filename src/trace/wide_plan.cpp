@@ -37,7 +37,9 @@ void WidePlan::copy_binary() {
   for (size_t i = 0; i < binary_.size(); ++i) halve_leaf(i);  // the new ones come up in their turn
   for (size_t i = binary_.size(); i-- > 0;) {
     Binary& node = binary_[i];
-    if (node.left != 0) node.count = binary_[node.left].count + binary_[node.right].count;
+    if (node.left == 0) continue;
+    node.count = binary_[node.left].count + binary_[node.right].count;
+    node.leaves = binary_[node.left].leaves + binary_[node.right].leaves;
   }
 }
 
@@ -84,10 +86,12 @@ void WidePlan::price(size_t i) {
     costs.fill(leaf_cost(i));
     return;
   }
-  for (size_t places = 2; places <= form_.width; ++places) {
+  const size_t useful = std::min<size_t>(form_.width, binary_[i].leaves);  // more places change nothing
+  for (size_t places = 2; places <= useful; ++places) {
     costs[places] = split_cost(i, places, 1);
     for (size_t n = 2; n < places; ++n) costs[places] = std::min(costs[places], split_cost(i, places, n));
   }
+  for (size_t places = useful + 1; places <= form_.width; ++places) costs[places] = costs[useful];
   costs[1] = node_cost(i);  // from the costs of its children in places 1 ... 8
   if (binary_[i].count <= options_.max_leaf_size && leaf_cost(i) <= costs[1]) {
     costs[1] = leaf_cost(i);

@@ -62,6 +62,7 @@ class WidePlan {
   struct Binary {
     uint32_t left = 0, right = 0;   // 0: a leaf
     uint32_t first = 0, count = 0;  // a leaf's prims; `count` of an inner node: all triangles below
+    uint32_t leaves = 1;            // below, or itself
     bool merged = false;            // an inner node whose triangles are best put into one leaf
   };
   using Costs = std::array<float, kMostWidth + 1>;  // [n]: of the triangles in at most n places; [0] is not used

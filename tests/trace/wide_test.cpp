@@ -288,48 +288,5 @@ TEST(Wide, FullTraversalVisitsAllOfManyCandidates) {
   }
 }
 
-TEST(Wide, RefusesBadOptions) {
-  const TriangleMesh mesh = test::mesh_families(1).front().mesh;
-  const Bvh binary = binned_tree(mesh);
-  const auto code_of = [&](const WideOptions& options) {
-    try {
-      WideBvh(binary, mesh, options);
-    } catch (const Error& error) {
-      return std::string(name(error.code));
-    }
-    return std::string("none");
-  };
-  EXPECT_EQ(code_of({}), "none");
-  EXPECT_EQ(code_of({.max_leaf_size = 0}), "usage");
-  EXPECT_EQ(code_of({.max_leaf_size = 9}), "usage");
-  EXPECT_EQ(code_of({.costs = {.leaf = -1}}), "usage");
-  EXPECT_EQ(code_of({.measure = [](const Bounds&) { return -1.0f; }}), "bad_heuristic");
-  std::vector<Hit> too_few(1);
-  EXPECT_THROW(WideBvh(binary, mesh).intersect(std::vector<Ray>(2), too_few), Error);
-  const std::vector<Isa> isas = supported_isas();
-  for (const Isa isa : {Isa::kSse4, Isa::kAvx2, Isa::kAvx512, Isa::kNeon})
-    EXPECT_EQ(code_of({.isa = isa}), std::ranges::count(isas, isa) == 1 ? "none" : "usage") << name(isa);
-}
-
-TEST(Isa, TheEnvironmentChooses) {
-  const char* before = std::getenv("RAYGRAIN_ISA");
-  const std::string kept = before != nullptr ? before : "";
-  ASSERT_EQ(supported_isas().front(), Isa::kScalar);
-  for (const Isa isa : supported_isas()) {
-    setenv("RAYGRAIN_ISA", name(isa), 1);
-    EXPECT_EQ(default_isa(), isa);
-    EXPECT_EQ(WideBvh(Bvh{}, {}).isa(), isa);
-  }
-  for (const char* wrong : {"avx", "AVX2", "fast", " "}) {
-    setenv("RAYGRAIN_ISA", wrong, 1);
-    EXPECT_THROW(default_isa(), Error) << wrong;
-    EXPECT_THROW(WideBvh(Bvh{}, {}), Error) << wrong;
-  }
-  setenv("RAYGRAIN_ISA", "", 1);
-  EXPECT_EQ(default_isa(), supported_isas().back());
-  before != nullptr ? setenv("RAYGRAIN_ISA", kept.c_str(), 1) : unsetenv("RAYGRAIN_ISA");
-  EXPECT_NO_THROW(WideBvh());
-}
-
 }  // namespace
 }  // namespace raygrain
