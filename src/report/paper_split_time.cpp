@@ -61,6 +61,7 @@ Chart split_time_figure(const StudyResults& study) {
                     "another threshold).",
                     short_number(facing), short_number(longest), kOrientationsOfSpfh, kOrientationsOfLsph));
   }
+  if (const std::string note = scenes_note(study.rows); !note.empty()) chart.notes.push_back(note);
   const PairedRatio ratio = paired_ratio(study.rows, kFacing, kBaseline, choosing);
   if (!timed || ratio.count == 0) {
     chart.finding =
