@@ -89,8 +89,7 @@ void Arguments::add_file(const std::string& flags, const std::string& value_name
 void Arguments::file(const std::string& flags, const std::string& value_name, std::string& target,
                      const std::string& help) {
   add_file(flags, value_name, target, help);
-  files_->inputs.emplace_back(
-      [&target, name = long_name(flags)] { return std::vector<NamedFile>{{name, target}}; });
+  files_->inputs.emplace_back([&target, name = long_name(flags)] { return std::vector<NamedFile>{{name, target}}; });
 }
 
 void Arguments::files(const std::string& flags, const std::string& value_name, std::vector<std::string>& targets,

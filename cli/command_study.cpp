@@ -85,8 +85,8 @@ int run(const Options& options) {
   StudyRunOptions how{folder, static_cast<unsigned>(options.jobs), environment(), shower(progress)};
   const StudyTable table = run_study(study, how);
   progress.erase();
-  output.print(fmt::format("{}: {} rows in {} after {}\n", study.name, table.rows.size(),
-                           folder + "/results.csv", duration(timer.seconds())));
+  output.print(fmt::format("{}: {} rows in {} after {}\n", study.name, table.rows.size(), folder + "/results.csv",
+                           duration(timer.seconds())));
   for (const std::string& line : study_summary(table)) output.print(line + "\n");
   return kSuccess;
 }

@@ -199,8 +199,8 @@ struct StudyPreset {
 /// paper, published, corrected, parameters, areas, memory, scaling, stress.
 std::vector<StudyPreset> study_presets();
 
-/// The grid behind paper, published, corrected, parameters and scaling, for changes and additions of one's own. Throws Error
-/// (kUsage).
+/// The grid behind paper, published, corrected, parameters and scaling, for changes and additions of one's own. Throws
+/// Error (kUsage).
 StudyGrid preset_grid(const std::string& name, const StudySources& sources);
 
 /// A preset by name. Throws Error (kUsage) for unknown names of studies and scenes.

@@ -43,8 +43,7 @@ LocalRay local_ray(const PointArea& area, Vec2d window_half, PointSpread spread,
     const Vec3d direction{uniform.x * window_half.x, uniform.y * window_half.y, 1};
     return {direction * z, direction};
   }
-  const Vec3d direction =
-      angular_direction(uniform.x * radians(area.fov_x) / 2, uniform.y * radians(area.fov_y) / 2);
+  const Vec3d direction = angular_direction(uniform.x * radians(area.fov_x) / 2, uniform.y * radians(area.fov_y) / 2);
   return {direction * (z / direction.z), direction};
 }
 

@@ -43,13 +43,14 @@ bool is_there(const Part& part, std::span<const ChartSection> sections) {
 }  // namespace
 
 Chart missing_charts(std::span<const ChartSection> sections) {
-  Chart chart{.id = "not-in-this-report", .title = "What is missing, and the commands that make it"};
+  Chart chart{.id = "missing-charts", .title = "What is missing, and the commands that make it"};
   chart.verdict = Verdict::kMissing;
   chart.table.columns = {"missing", "what it shows", "command"};
   for (const Part& part : kParts)
     if (!is_there(part, sections))
-      chart.table.rows.push_back({std::string(part.mark), std::string(part.title),
-                                  "raygrain study " + std::string(part.study) + " --scenes DIR"});
+      chart.table.rows.push_back(
+          {std::string(part.mark), std::string(part.title),
+           "raygrain study " + std::string(part.study) + (part.study == "scaling" ? "" : " --scenes DIR")});
   chart.finding = "The files of this report hold nothing of these; give it the results of the commands, too.";
   return chart;
 }

@@ -37,8 +37,8 @@ Related related_within_scenes(std::span<const ResultRow> rows) {
   std::vector<std::pair<double, double>> points;
   const std::vector<std::string> scenes = scene_names(rows);
   for (const std::string& scene : scenes) {
-    auto own = pairs_of(filtered(rows, [&](const ResultRow& row) { return row.scene == scene; }), kOverlapColumn,
-                        "real_cost");
+    auto own =
+        pairs_of(filtered(rows, [&](const ResultRow& row) { return row.scene == scene; }), kOverlapColumn, "real_cost");
     std::erase_if(own, [](const auto& point) { return !(point.second > 0); });
     double mean_x = 0, mean_y = 0;
     for (auto& [x, y] : own) {
@@ -91,7 +91,8 @@ Chart overlap_cost_figure(const StudyResults& study) {
       std::isnan(pruned) ? "not been measured" : fmt::format("{:.2f}", pruned), within.correlation,
       within.significant ? "" : ", which may be chance");
   chart.notes.emplace_back(
-      "Confirmed where the correlation is significant (95 %) over all tests and, with each scene's means of overlap and "
+      "Confirmed where the correlation is significant (95 %) over all tests and, with each scene's means of overlap "
+      "and "
       "of the logarithm of cost removed, within scenes: that scenes differ in both proves nothing.");
   chart.notes.emplace_back("Of the paper's own points only the picture is published.");
   if (const std::string note = scenes_note(full); !note.empty()) chart.notes.push_back(note);

@@ -126,7 +126,8 @@ StudyReport make_study_report(std::span<const ResultTable> tables) {
   }
   std::vector<Chart> tables_of_paper{parameter_table()};
   const auto has_tuning = [](const ChartSection& section) {
-    return std::any_of(section.charts.begin(), section.charts.end(), [](const Chart& c) { return c.label == "Table 2"; });
+    return std::any_of(section.charts.begin(), section.charts.end(),
+                       [](const Chart& c) { return c.label == "Table 2"; });
   };
   if (std::none_of(report.sections.begin(), report.sections.end(), has_tuning)) {
     tables_of_paper.push_back(tuning_table({}));

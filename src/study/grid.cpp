@@ -120,8 +120,18 @@ void check_names(const StudyGrid& grid, const std::vector<Entry>& entries) {
                   "Give a heuristic of your own another name");
 }
 
+/// Rows of two scenes by one name could not be told apart.
+void check_scene_names(const StudyGrid& grid) {
+  for (size_t i = 0; i < grid.scenes.size(); ++i)
+    for (size_t j = 0; j < i; ++j)
+      if (grid.scenes[i].name == grid.scenes[j].name)
+        throw Error(ErrorCode::kUsage, grid.name, "two scenes are named \"" + grid.scenes[i].name + '"',
+                    "Give one of them another name");
+}
+
 void check_grid(const StudyGrid& grid) {
   if (grid.scenes.empty() && !grid.missing.empty()) study::fail_without_rows(grid.name, grid.missing);
+  check_scene_names(grid);
   check_names(grid, grid.registry.measures);
   check_names(grid, grid.registry.orientations);
   check_names(grid, grid.registry.builders);

@@ -185,7 +185,8 @@ StudyGrid read_grid(const std::string& path, const StudySources& sources) {
   grid.name = name_in(file.at("name"));
   grid.source = text + sources.scenes;
   if (const auto measures = file.find("measures"))
-    for (const JsonReader& item : measures->items()) grid.registry.measures.push_back(read_measure(item, grid.registry));
+    for (const JsonReader& item : measures->items())
+      grid.registry.measures.push_back(read_measure(item, grid.registry));
   read_scenes(file, sources, grid);
   for (const JsonReader& item : file.at("recipes").items()) grid.recipes.push_back(read_recipe(item, grid.registry));
   grid.rays = {{"matched", PointSpread::kNearPlane, sources.rays}};
@@ -204,15 +205,14 @@ StudyGrid read_grid(const std::string& path, const StudySources& sources) {
   return grid;
 }
 
-/// Runs what looks at the file's content: whatever is wrong with it, the file is to be mended, not the call.
+/// Looks at the file's content: whatever is wrong with it, the file is to be mended, not the call.
 template <class Read>
 auto as_content(const std::string& path, const Read& read) {
   try {
     return read();
   } catch (const Error& error) {
-    if (error.code != ErrorCode::kUsage) throw;
     const bool placed = error.where.starts_with(path);
-    throw Error(ErrorCode::kMalformed, placed ? error.where : path,
+    throw Error(error.code == ErrorCode::kUsage ? ErrorCode::kMalformed : error.code, placed ? error.where : path,
                 placed ? error.message : error.where + ": " + error.message, error.hint);
   }
 }

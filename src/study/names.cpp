@@ -24,7 +24,8 @@ bool is_same_name(std::string_view a, std::string_view b) {
 void fail_without_rows(const std::string& study, const std::vector<std::string>& missing) {
   std::string what;
   for (const std::string& line : missing) what += (what.empty() ? "" : ", ") + line.substr(0, line.find(';'));
-  throw Error(ErrorCode::kNotFound, study, "the scenes asked for are known, but their models are missing (" + what + ")",
+  throw Error(ErrorCode::kNotFound, study,
+              "the scenes asked for are known, but their models are missing (" + what + ")",
               "Name the folder that holds them with --scenes DIR");
 }
 

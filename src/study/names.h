@@ -18,8 +18,7 @@ bool is_same_name(std::string_view a, std::string_view b);
 
 template <class Entries>
 bool is_known_name(const Entries& entries, std::string_view name) {
-  return std::any_of(entries.begin(), entries.end(),
-                     [&](const auto& entry) { return is_same_name(entry.name, name); });
+  return std::any_of(entries.begin(), entries.end(), [&](const auto& entry) { return is_same_name(entry.name, name); });
 }
 
 /// What must hold of a study before its first row runs. Throws Error: kUsage (two rows with one key, names that are

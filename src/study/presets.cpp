@@ -51,7 +51,8 @@ std::vector<StudyPreset> study_presets() {
 StudyGrid preset_grid(const std::string& name, const StudySources& sources) {
   const Preset& preset = find_preset(name);
   if (preset.grid == nullptr)
-    throw Error(ErrorCode::kUsage, name, "is no grid of trees", "paper, published, corrected, parameters and scaling are");
+    throw Error(ErrorCode::kUsage, name, "is no grid of trees",
+                "paper, published, corrected, parameters and scaling are");
   return preset.grid(sources);
 }
 

@@ -1,8 +1,8 @@
 // The 256 tests with the rules of the program that made the published numbers of "Ray Distribution Aware Heuristics for
 // Bounding Volume Hierarchies Construction in Ray Tracing" (2024). Everything in which that program differs from the
 // paper's text, or from what is right, stands in this file and uses public injection points only: it is also the proof
-// that they reach far enough. The study `paper` runs the same tests as they should be. Of raygrain it includes public
-// headers, and the one that declares the function which this file defines.
+// that they reach far enough. The study `paper` runs the same tests as they should be. Beside public headers it
+// includes the one that declares its only function.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -84,8 +84,8 @@ Ray draw_ray(std::mt19937& engine, const PointArea& area, const Frame& frame) {
 Ray draw_ray(std::mt19937& engine, const PlaneArea& area, const Frame& frame) {
   engine.discard(2);
   const double x = draw(engine, static_cast<double>(area.half_width));
-  const double y = draw(engine, static_cast<double>(area.half_height));
-  return {to_float(to_world(frame, {x, y, 0})), to_float(frame.forward)};
+  return {to_float(to_world(frame, {x, draw(engine, static_cast<double>(area.half_height)), 0})),
+          to_float(frame.forward)};
 }
 
 std::vector<Ray> draw_rays(const StudyScene& scene, const StudyArea& area, const StudyRecipe& recipe,
@@ -173,11 +173,6 @@ void published_planes(const NodeContext& node, const Bounds&, int axis, uint32_t
     planes.push_back(lo + length * static_cast<float>(i) / static_cast<float>(bins));
 }
 
-/// Of equal planes the first, whatever it does.
-bool published_preference(const PlanePrice& candidate, const PlanePrice& best) {
-  return candidate.cost < best.cost;
-}
-
 /// Figure 9, but the root stops after its first axis that splits, since its father's probability was infinite, and the
 /// fallback's split always wins. No probability at all (0 / 0) passes for satisfactory.
 SplitVerdict published_decision(const SplitState& state, const PaperParameters& parameters) {
@@ -202,7 +197,7 @@ BuildOptions published_options(const Combo& combo, const InfluenceArea* area, co
   fallback.measure = surface;
   fallback.orientation = longest_axis_orientation();
   fallback.planes = published_planes;
-  fallback.preference = published_preference;
+  fallback.preference = [](const PlanePrice& a, const PlanePrice& best) { return a.cost < best.cost; };  // or the first
   fallback.decision = published_fallback_decision;
 
   BuildOptions options;
@@ -287,16 +282,12 @@ StudyRules published_rules() {
 }  // namespace
 
 StudyGrid published_grid(const StudySources& sources) {
-  StudySources all = sources;
-  all.quick = false;
-  StudyGrid grid = preset_grid("paper", all);
+  StudyGrid grid = preset_grid("paper", sources);
   grid.name = "published";
   grid.recipes.clear();
   for (const Combo& combo : kCombos) {
-    StudyRecipe& row = grid.recipes.emplace_back();
-    row.combo = combo.name;
-    row.recipe = {combo.pah ? "PAH" : "SAH", combo.spfh ? "SPFH" : "LSPH", "paper", {}};
-    row.recipe.parameters.split_plane_quality_threshold = combo.threshold;
+    grid.recipes.push_back({combo.name, "", {combo.pah ? "PAH" : "SAH", combo.spfh ? "SPFH" : "LSPH", "paper", {}}});
+    grid.recipes.back().recipe.parameters.split_plane_quality_threshold = combo.threshold;
   }
   grid.rays = {{"published", PointSpread::kAngle, sources.rays}};
   grid.rules = published_rules();

@@ -59,9 +59,8 @@ std::vector<std::vector<const RecipeMeans*>> by_tests(const std::vector<RecipeMe
     else
       blocks.push_back({&m});
   }
-  std::stable_sort(blocks.begin(), blocks.end(), [](const auto& a, const auto& b) {
-    return a.front()->tests.size() > b.front()->tests.size();
-  });
+  std::stable_sort(blocks.begin(), blocks.end(),
+                   [](const auto& a, const auto& b) { return a.front()->tests.size() > b.front()->tests.size(); });
   return blocks;
 }
 
@@ -69,14 +68,15 @@ void add_means(std::vector<std::string>& lines, const std::vector<RecipeMeans>& 
   const auto blocks = by_tests(means);
   for (const auto& block : blocks) {
     const size_t tests = block.front()->tests.size();
-    lines.push_back(blocks.size() == 1
-                        ? fmt::format("means over the {} tests of all recipes:", tests)
-                        : fmt::format("means over the {} tests of these recipes, not to be held against others:", tests));
+    lines.push_back(
+        blocks.size() == 1
+            ? fmt::format("means over the {} tests of all recipes:", tests)
+            : fmt::format("means over the {} tests of these recipes, not to be held against others:", tests));
     lines.push_back(fmt::format("  {:<46} {:>8} {:>8} {:>14}", "recipe", "pruned", "real", "with fallback"));
     for (const RecipeMeans* m : block) {
       const auto n = static_cast<double>(m->rows);
-      lines.push_back(fmt::format("  {:<46} {:>8.2f} {:>8.2f} {:>14.2f}", m->recipe, m->pruned / n, m->real / n,
-                                  m->fallback / n));
+      lines.push_back(
+          fmt::format("  {:<46} {:>8.2f} {:>8.2f} {:>14.2f}", m->recipe, m->pruned / n, m->real / n, m->fallback / n));
     }
   }
 }
