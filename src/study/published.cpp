@@ -23,8 +23,7 @@
 namespace raygrain::study {
 namespace {
 
-// One constant of that program served as every tolerance.
-constexpr float kTolerance = 0.01f;
+constexpr float kTolerance = 0.01f;  // of everything in that program
 constexpr uint32_t kOctreeLevel = 5;
 /// A combination as published. The point tests that were printed as PAH+LSPH had been made with another recipe; both
 /// are run.
