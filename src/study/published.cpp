@@ -50,8 +50,8 @@ const Combo& combo_of(const StudyRecipe& recipe) {
 // --- Rays: the engine that made the random scenes went on to draw the rays, test by test. ---
 
 constexpr uint64_t kSceneDraws = uint64_t{100 + 1000} * 9 * 2;  // two random scenes, nine doubles a triangle
-constexpr uint64_t kPlaneDraws = 3 * 2, kPointDraws = 2 * 2;    // a ray: depth (unused), x, y; or yaw, pitch
-constexpr uint64_t kTestsPerSection = 7 * 4;                    // Sponza had runs of its own
+constexpr uint64_t kPlaneDraws = 6, kPointDraws = 4;            // a ray: depth (unused), x, y; or yaw, pitch
+constexpr uint64_t kTestsPerSection = 28;                       // Sponza had runs of its own
 
 double draw(std::mt19937& engine, double half) {
   const double low = static_cast<double>(engine()), high = static_cast<double>(engine());

@@ -74,7 +74,7 @@ std::vector<StudyScene> paper_scenes(const StudySources& sources, std::vector<st
     std::string path(experiment.source);
     const bool is_file = !path.starts_with("procedural:");
     if (is_file) {
-      path = sources.scenes.empty() ? "" : sources.scenes + '/' + path;
+      path = sources.scenes.empty() ? std::string{} : (std::filesystem::path(sources.scenes) / path).string();
       std::error_code none;
       if (path.empty() || !std::filesystem::is_regular_file(path, none)) {
         left_out = experiment.scene;

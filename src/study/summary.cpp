@@ -43,6 +43,7 @@ std::vector<RecipeMeans> means_of_recipes(const StudyTable& table) {
     m.fallback += table.number(row, fallback);
   }
   std::vector<RecipeMeans> means;
+  means.reserve(all.size());
   for (auto& [recipe, m] : all) means.push_back(std::move(m));
   return means;
 }
