@@ -211,10 +211,20 @@ void check_recipe(const StudyGrid& grid, const StudyArea& area, const StudyRecip
   }
 }
 
+void check_global(const StudyGrid& grid) {
+  if (grid.rules.global_tree) return;
+  try {
+    validate(make_build_options(grid.global, grid.registry, {}));
+  } catch (const Error& error) {
+    throw Error(error.code, grid.name + ": global", error.where + ": " + error.message, error.hint);
+  }
+}
+
 }  // namespace
 
 Study make_study(const StudyGrid& given) {
   check_grid(given);
+  check_global(given);
   const auto grid = std::make_shared<const StudyGrid>(given);
   Study study{grid->name, grid_columns(), {}, identity_of(*grid), grid->missing};
   for (const StudyScene& scene : grid->scenes) {
