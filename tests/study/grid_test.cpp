@@ -109,6 +109,7 @@ TEST_F(GridFile, RefusesWhatItDoesNotUnderstand) {
            {"\"Hills\"", "\"Random100\"", "", ErrorCode::kMalformed},                 // two of one name
            {"\"improved\"", "\"MINE+ALL@binned\"", "", ErrorCode::kMalformed},        // two of one name
            {"\"MINE+ALL@binned\"", "\"DIR+ALL@binned\"", "", ErrorCode::kMalformed},  // point areas
+           {"\"global\": \"SAH", "\"global\": \"PAH", "", ErrorCode::kMalformed},     // there is no area
            {"\"repeats\": 2", "\"repeats\": 1000001", "#/repeats", ErrorCode::kMalformed},
            {"\"repeats\": 2", "\"repeats\": 900000", "", ErrorCode::kLimit},
            {"}", "", "", ErrorCode::kMalformed}}) {
@@ -144,6 +145,7 @@ TEST_F(GridFile, RefusesGridsThatCannotRun) {
   refused([](StudyGrid& grid) { grid.repeats = 0; });
   refused([](StudyGrid& grid) { grid.recipes[0].recipe.parameters.bins = 1; });
   refused([](StudyGrid& grid) { grid.recipes.back().recipe.parameters.acceptable_ratio = -1; });
+  refused([](StudyGrid& grid) { grid.global.parameters.bins = 1; });
   refused([](StudyGrid& grid) { grid.recipes[0].setting = "two\nlines"; });
   refused([](StudyGrid& grid) { grid.rays[0].name = "\x1b[2J"; });
   refused([](StudyGrid& grid) { grid.registry.measures.push_back(grid.registry.measures[1]); });
