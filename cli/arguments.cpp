@@ -1,5 +1,7 @@
 #include "cli/arguments.h"
 
+#include <filesystem>
+
 #include <CLI/CLI.hpp>
 
 #include "cli/values.h"
@@ -110,7 +112,7 @@ void Arguments::output_folder(const std::string& flags, const std::string& value
   files_->outputs.emplace_back([&target, names = std::move(names), flag = long_name(flags)] {
     std::vector<std::string> paths;
     for (const std::string& name : names)
-      if (!target.empty()) paths.push_back(target + "/" + name);
+      if (!target.empty()) paths.push_back((std::filesystem::path(target) / name).string());
     return named(flag, paths);
   });
 }
