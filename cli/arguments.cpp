@@ -1,5 +1,7 @@
 #include "cli/arguments.h"
 
+#include <filesystem>
+
 #include <CLI/CLI.hpp>
 
 #include "cli/values.h"
@@ -19,6 +21,13 @@ void describe(CLI::Option* option, const std::string& value_name, const std::str
   if (!group.empty()) option->group(group);
 }
 
+std::vector<NamedFile> named(const std::string& name, const std::vector<std::string>& paths) {
+  std::vector<NamedFile> files;
+  files.reserve(paths.size());
+  for (const std::string& path : paths) files.push_back({name, path});
+  return files;
+}
+
 CLI::Option* add_text(CLI::App& app, const std::string& flags, const std::function<void(const std::string&)>& take,
                       const std::string& help) {
   return app.add_option_function<std::string>(flags, take, help);
@@ -26,12 +35,28 @@ CLI::Option* add_text(CLI::App& app, const std::string& flags, const std::functi
 
 }  // namespace
 
+/// Names and where their values will be once parsing is done.
+struct Arguments::Files {
+  using Values = std::function<std::vector<NamedFile>()>;
+  std::vector<Values> inputs, outputs;
+
+  static std::vector<NamedFile> all(const std::vector<Values>& list) {
+    std::vector<NamedFile> files;
+    for (const Values& values : list)
+      for (NamedFile& file : values()) files.push_back(std::move(file));
+    return files;
+  }
+};
+
+Arguments::Arguments(CLI::App& app) : app_(&app), files_(std::make_shared<Files>()) {}
+
 void Arguments::operand(const std::string& name, std::string& target, const std::string& help) {
   const auto take = [&target, name](const std::string& value) {
     if (value.empty()) fail_usage(name, "is empty", "Give its name, or see --help");
     target = value;
   };
   describe(add_text(*app_, name, take, help)->required(), "", group_);
+  files_->inputs.emplace_back([&target, name] { return std::vector<NamedFile>{{name, target}}; });
 }
 
 void Arguments::operands(const std::string& name, std::vector<std::string>& targets, const std::string& help) {
@@ -41,6 +66,7 @@ void Arguments::operands(const std::string& name, std::vector<std::string>& targ
     targets = values;
   };
   describe(app_->add_option_function<std::vector<std::string>>(name, take, help)->required(), "", group_);
+  files_->inputs.emplace_back([&targets, name] { return named(name, targets); });
 }
 
 void Arguments::text(const std::string& flags, const std::string& value_name, std::string& target,
@@ -52,14 +78,47 @@ void Arguments::text(const std::string& flags, const std::string& value_name, st
   describe(add_text(*app_, flags, take, help), value_name, group_);
 }
 
-void Arguments::file(const std::string& flags, const std::string& value_name, std::string& target,
-                     const std::string& help) {
+void Arguments::add_file(const std::string& flags, const std::string& value_name, std::string& target,
+                         const std::string& help) {
   const auto take = [&target, name = long_name(flags)](const std::string& value) {
     if (value.empty()) fail_usage(name, "is empty", "Give a name after it");
     if (value == "-") fail_usage(name, "needs a file: only --json takes - for standard output", "Give a name after it");
     target = value;
   };
   describe(add_text(*app_, flags, take, help), value_name, group_);
+}
+
+void Arguments::file(const std::string& flags, const std::string& value_name, std::string& target,
+                     const std::string& help) {
+  add_file(flags, value_name, target, help);
+  files_->inputs.emplace_back([&target, name = long_name(flags)] { return std::vector<NamedFile>{{name, target}}; });
+}
+
+void Arguments::files(const std::string& flags, const std::string& value_name, std::vector<std::string>& targets,
+                      const std::string& help) {
+  list(flags, value_name, targets, help);
+  files_->inputs.emplace_back([&targets, name = long_name(flags)] { return named(name, targets); });
+}
+
+void Arguments::output(const std::string& flags, const std::string& value_name, std::string& target,
+                       const std::string& help) {
+  add_file(flags, value_name, target, help);
+  writes(long_name(flags), [&target] { return target; });
+}
+
+void Arguments::output_folder(const std::string& flags, const std::string& value_name, std::string& target,
+                              std::vector<std::string> names, const std::string& help) {
+  add_file(flags, value_name, target, help);
+  files_->outputs.emplace_back([&target, names = std::move(names), flag = long_name(flags)] {
+    std::vector<std::string> paths;
+    for (const std::string& name : names)
+      if (!target.empty()) paths.push_back((std::filesystem::path(target) / name).string());
+    return named(flag, paths);
+  });
+}
+
+void Arguments::writes(const std::string& name, std::function<std::string()> path) {
+  files_->outputs.emplace_back([path = std::move(path), name] { return std::vector<NamedFile>{{name, path()}}; });
 }
 
 void Arguments::require(const std::string& flags) {
@@ -125,7 +184,10 @@ Arguments Arguments::command(const std::string& name, const std::string& help) {
 }
 
 void Arguments::action(std::function<void()> on_chosen) {
-  app_->callback(std::move(on_chosen));
+  app_->callback([files = files_, on_chosen = std::move(on_chosen)] {
+    require_separate(Files::all(files->inputs), Files::all(files->outputs));
+    on_chosen();
+  });
 }
 
 }  // namespace raygrain::cli

@@ -4,12 +4,15 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "raygrain/vec.h"
+
+#include "cli/separate_files.h"
 
 namespace CLI {
 class App;
@@ -23,14 +26,25 @@ using Action = std::function<int()>;
 /// The operands and options of one command. Targets must outlive parsing. Values that do not fit throw Error (kUsage).
 class Arguments {
  public:
-  explicit Arguments(CLI::App& app) : app_(&app) {}
+  explicit Arguments(CLI::App& app);
 
+  /// Something to read: a file, or what is none.
   void operand(const std::string& name, std::string& target, const std::string& help);
   /// One or more, the last operands of the command.
   void operands(const std::string& name, std::vector<std::string>& targets, const std::string& help);
   void text(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);
-  /// The name of a file or folder. "-" is refused, so that none of that name is made.
+  /// The name of a file or folder to read. "-" is refused, here and below, so that none of that name is made.
   void file(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);
+  /// Files to read, comma-separated, may be repeated.
+  void files(const std::string& flags, const std::string& value_name, std::vector<std::string>& targets,
+             const std::string& help);
+  /// The name of a file to write. No command runs that would write over a file it reads or writes (require_separate).
+  void output(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);
+  /// The name of a folder for files of these names.
+  void output_folder(const std::string& flags, const std::string& value_name, std::string& target,
+                     std::vector<std::string> names, const std::string& help);
+  /// One more file that the option `name` writes; none where `path` gives "" or "-". Asked once all is parsed.
+  void writes(const std::string& name, std::function<std::string()> path);
   /// The option with these flags must be given.
   void require(const std::string& flags);
   /// Comma-separated, may be repeated.
@@ -58,11 +72,16 @@ class Arguments {
 
   /// A command below this one, of which exactly one must be given.
   Arguments command(const std::string& name, const std::string& help);
-  /// Runs when this command was chosen.
+  /// Runs when this command was chosen, after the check of its files.
   void action(std::function<void()> on_chosen);
 
  private:
+  struct Files;  // what the command reads and writes
+
+  void add_file(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);
+
   CLI::App* app_;
+  std::shared_ptr<Files> files_;
   std::string group_;
 };
 

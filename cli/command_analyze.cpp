@@ -107,7 +107,7 @@ Action declare_analyze(Arguments& arguments) {
   add_tree_options(arguments, options->tree);
   arguments.file("--tree", "FILE.rgt", options->tree.file, "Analyze this built tree in place of a new one");
   arguments.whole("--rays", options->rays, {1, kMostRays}, "Rays of the area to trace");
-  arguments.file("--nodes", "FILE.csv", options->nodes, "Write a row for each node");
+  arguments.output("--nodes", "FILE.csv", options->nodes, "Write a row for each node");
   add_common(arguments, options->tree.common);
   return [options] { return analyze_tree(*options); };
 }

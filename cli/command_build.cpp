@@ -48,8 +48,8 @@ int build(const Options& options) {
 Action declare_build(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   add_tree_options(arguments, options->tree);
-  arguments.file("-o,--output", "FILE", options->output,
-                 "Where to write the tree: TREE.rgt for --tree and refit, else JSON");
+  arguments.output("-o,--output", "FILE", options->output,
+                   "Where to write the tree: TREE.rgt for --tree and refit, else JSON");
   arguments.require("--output");
   add_common(arguments, options->tree.common);
   return [options] { return build(*options); };

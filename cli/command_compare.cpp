@@ -126,7 +126,8 @@ Action declare_compare(Arguments& arguments) {
   arguments.whole("--rays", options->rays, {1, kMostRays}, "Rays per area");
   arguments.whole("--seed", options->seed, {}, "Of the rays");
   arguments.flag("--verify", options->verify, "Check every hit against brute force, too (slow)");
-  arguments.file("--out", "DIR", options->folder, "Write compare.json, compare.csv and pictures into this folder");
+  arguments.output_folder("--out", "DIR", options->folder, {"compare.json", "compare.csv"},
+                          "Write compare.json, compare.csv and pictures into this folder");
   add_common(arguments, options->common);
   arguments.footer("Every hit is checked against an independent tree; any difference ends with exit code 1.");
   return [options] { return compare_scene(*options); };

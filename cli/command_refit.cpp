@@ -73,7 +73,7 @@ Action declare_refit(Arguments& arguments) {
   arguments.operand("SCENE", options->scene, kSceneHelp);
   arguments.file("--tree", "OLD.rgt", options->tree, "A tree of the whole scene, from before its vertices moved");
   arguments.require("--tree");
-  arguments.file("-o,--output", "NEW.rgt", options->output, "Where to write the tree that fits");
+  arguments.output("-o,--output", "NEW.rgt", options->output, "Where to write the tree that fits");
   arguments.require("--output");
   add_common(arguments, options->common);
   arguments.footer(

@@ -8,6 +8,7 @@
 #include "raygrain/error.h"
 #include "raygrain/io.h"
 #include "raygrain/study_report.h"
+#include "raygrain/view.h"
 
 #include "cli/built_page.h"
 #include "cli/commands.h"
@@ -62,9 +63,12 @@ StudyReport with_links(StudyReport report, const std::vector<std::string>& views
 
 void check_views(const std::vector<std::string>& views) {
   std::error_code ignored;
-  for (const std::string& view : views)
-    if (!fs::is_regular_file(view, ignored))
-      throw Error(ErrorCode::kNotFound, view, "there is no such page", "Make it with raygrain view SCENE --out FILE");
+  for (const std::string& view : views) {
+    const char* hint = "Make it with raygrain view SCENE --out FILE";
+    if (!fs::is_regular_file(view, ignored)) throw Error(ErrorCode::kNotFound, view, "there is no such page", hint);
+    if (!is_view_page(read_whole_file(view)))
+      throw Error(ErrorCode::kMalformed, view, "is no page of raygrain view", hint);
+  }
 }
 
 /// The page, and what to tell of it.
@@ -140,10 +144,10 @@ Action declare_report(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   arguments.operands("RESULTS", options->results,
                      "results.csv files of studies, folders that hold one, or compare.csv files");
-  arguments.file("--out", "report.html", options->page, "Write the report as one self-contained page");
-  arguments.file("--markdown", "FILE", options->markdown,
-                 "Write it as Markdown, too, with PNG charts in a folder beside the file");
-  arguments.list("--views", "FILE,...", options->views, "Link these pages of raygrain view");
+  arguments.output("--out", "report.html", options->page, "Write the report as one self-contained page");
+  arguments.output("--markdown", "FILE", options->markdown,
+                   "Write it as Markdown, too, with PNG charts in a folder beside the file");
+  arguments.files("--views", "FILE,...", options->views, "Link these pages of raygrain view");
   arguments.flag("--static", options->plain, "Make the page without scripts: SVG charts only");
   arguments.file("--template", "FILE", options->page_template,
                  "The built interactive page to fill [the one beside the program]");

@@ -132,7 +132,15 @@ int describe(const Options& options) {
   return kSuccess;
 }
 
-constexpr char kTargetHelp[] = "Where to write it: .ply, .obj, or .json for a scene.json with a .ply beside it";
+void add_target(Arguments& arguments, Options& options) {
+  arguments.output("-o,--output", "FILE", options.output,
+                   "Where to write it: .ply, .obj, or .json for a scene.json with a .ply beside it");
+  arguments.require("--output");
+  arguments.writes("--output", [&options] {
+    const std::filesystem::path path(options.output);
+    return path.extension() == ".json" ? std::filesystem::path(path).replace_extension(".ply").string() : "";
+  });
+}
 
 }  // namespace
 
@@ -142,8 +150,7 @@ Action declare_generate(Arguments& arguments) {
                     "city, forest, terrain, random100 or random1000; or procedural:KIND?size=N&seed=S");
   arguments.optional_whole("--size", options->size, {1, UINT32_MAX}, "Buildings, trees or cells per side [by kind]");
   arguments.optional_whole("--seed", options->seed, {}, "Other seeds give other scenes of the kind [1]");
-  arguments.file("-o,--output", "FILE", options->output, kTargetHelp);
-  arguments.require("--output");
+  add_target(arguments, *options);
   add_common(arguments, options->common);
   return [options] { return generate(*options); };
 }
@@ -151,8 +158,7 @@ Action declare_generate(Arguments& arguments) {
 Action declare_convert(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   arguments.operand("SCENE", options->scene, kSceneHelp);
-  arguments.file("-o,--output", "FILE", options->output, kTargetHelp);
-  arguments.require("--output");
+  add_target(arguments, *options);
   add_common(arguments, options->common);
   return [options] { return convert(*options); };
 }

@@ -11,6 +11,7 @@
 
 #include "base/timer.h"
 #include "cli/commands.h"
+#include "cli/file_names.h"
 #include "cli/output.h"
 #include "cli/progress.h"
 
@@ -21,7 +22,7 @@ namespace {
 constexpr uint64_t kMostRays = 100'000'000, kMostJobs = 1024;
 
 struct Options {
-  std::string study, scenes, folder = "study";
+  std::string study, scenes, folder;  // no folder: one below study/ that is named as the study
   std::vector<std::string> only;
   uint64_t rays = 1000, seed = 1, jobs = 1;
   bool quick = false, quiet = false;
@@ -65,6 +66,11 @@ StudyEnvironment environment() {
   return {all.commit, all.compiler, all.cpu};
 }
 
+/// Each study has a folder of its own, so that none is in the way of another.
+std::string folder_of(const Options& options, const Study& study) {
+  return options.folder.empty() ? "study/" + file_names({&study.name, 1}).front() : options.folder;
+}
+
 int run(const Options& options) {
   if (!options.scenes.empty() && !std::filesystem::is_directory(options.scenes))
     throw Error(ErrorCode::kNotFound, options.scenes, "is no folder", "Name the folder of the scenes");
@@ -75,11 +81,12 @@ int run(const Options& options) {
   for (const std::string& missing : study.missing) output.note("left out: " + missing + "\n");
   Progress progress(!options.quiet);
   const Timer timer;
-  StudyRunOptions how{options.folder, static_cast<unsigned>(options.jobs), environment(), shower(progress)};
+  const std::string folder = folder_of(options, study);
+  StudyRunOptions how{folder, static_cast<unsigned>(options.jobs), environment(), shower(progress)};
   const StudyTable table = run_study(study, how);
   progress.erase();
-  output.print(fmt::format("{}: {} rows in {} after {}\n", study.name, table.rows.size(),
-                           options.folder + "/results.csv", duration(timer.seconds())));
+  output.print(fmt::format("{}: {} rows in {} after {}\n", study.name, table.rows.size(), folder + "/results.csv",
+                           duration(timer.seconds())));
   for (const std::string& line : study_summary(table)) output.print(line + "\n");
   return kSuccess;
 }
@@ -89,7 +96,8 @@ std::string known_studies() {
   for (const StudyPreset& preset : study_presets())
     text += fmt::format("  {:<11} {}\n", preset.name, preset.description);
   return text +
-         "A run that was stopped goes on when it is started again. Rows of results.csv are the same for any --jobs,\n"
+         "A run that was stopped goes on when it is started again; finished results of another study, or of the same\n"
+         "with other options, are never overwritten. Rows of results.csv are the same for any --jobs,\n"
          "except times: measure those with one job on a quiet machine.";
 }
 
@@ -101,7 +109,8 @@ Action declare_study(Arguments& arguments) {
   arguments.file("--scenes", "DIR", options->scenes,
                  "The folder of the paper's models; what needs them is left out without");
   arguments.list("--only", "SCENE,...", options->only, "These scenes alone");
-  arguments.file("--out", "DIR", options->folder, "The folder that results.csv is written into [study]");
+  arguments.output_folder("--out", "DIR", options->folder, {"results.csv", "results.partial.csv", "study.txt"},
+                          "The folder that results.csv is written into [study/NAME]");
   arguments.whole("--rays", options->rays, {1, kMostRays}, "Rays per area");
   arguments.whole("--seed", options->seed, {0, UINT32_MAX}, "Of the rays");
   arguments.whole("-j,--jobs", options->jobs, {0, kMostJobs}, "Rows at a time; 0 = all cores");

@@ -236,7 +236,7 @@ Action declare_trace(Arguments& arguments) {
   arguments.operand("SCENE", options->scene, kSceneHelp);
   arguments.file("--rays", "FILE.csv", options->rays, "Rays: columns ox,oy,oz,dx,dy,dz and optional tmin,tmax");
   arguments.text("--set", "NAME", options->set, "Rays of this ray set of a scene.json");
-  arguments.file("-o,--output", "HITS.csv", options->output, "Hits: columns t,u,v,triangle; a miss is inf,0,0,-1");
+  arguments.output("-o,--output", "HITS.csv", options->output, "Hits: columns t,u,v,triangle; a miss is inf,0,0,-1");
   arguments.require("--output");
   add_area_options(arguments, options->areas);
   arguments.group("Trees");

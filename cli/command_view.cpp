@@ -150,7 +150,7 @@ Action declare_view(Arguments& arguments) {
   arguments.list("--recipes", "NAME,...", options->recipes,
                  "Trees to show, of every area, as 'raygrain recipes' explains [SAH+LSPH,PAH+ALL]");
   arguments.whole("--seed", options->seed, {}, "Of the rays that the page casts at first, and of samples");
-  arguments.file("--out", "view.html", options->page, "Write the page: one file, which needs no network");
+  arguments.output("--out", "view.html", options->page, "Write the page: one file, which needs no network");
   arguments.flag("--serve", options->serve, "Offer the page to browsers of this machine until interrupted");
   arguments.whole("--port", options->port, {0, kHighestPort}, "Of --serve; 0: any that is free");
   arguments.file("--template", "FILE", options->page_template, "The built page to fill [the one beside the program]");

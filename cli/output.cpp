@@ -27,6 +27,7 @@ void add_common(Arguments& arguments, CommonOptions& options) {
   arguments.flag("-q,--quiet", options.quiet, "Print results only: no progress, no notes");
   arguments.whole("--threads", options.threads, {0, kMostThreads}, "Threads to use; 0 = one per core");
   arguments.text("--json", "FILE|-", options.json, "Write the result as JSON to a file, or to standard output (-)");
+  arguments.writes("--json", [&options] { return options.json; });
 }
 
 void write_standard_output(const std::string& text) {

@@ -12,7 +12,7 @@ if(RAYGRAIN_SANITIZE)
   target_link_options(raygrain_options INTERFACE -fsanitize=${RAYGRAIN_SANITIZE})
 endif()
 if(RAYGRAIN_COVERAGE)
-  target_compile_options(raygrain_options INTERFACE --coverage)
+  target_compile_options(raygrain_options INTERFACE --coverage -fprofile-update=atomic)
   target_link_options(raygrain_options INTERFACE --coverage)
 endif()
 target_compile_definitions(raygrain_options INTERFACE

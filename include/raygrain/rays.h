@@ -63,6 +63,11 @@ std::vector<Ray> cast_rays(const AreaRays& options, size_t count, uint64_t seed)
 std::vector<Ray> cast_rays(const SurfaceRays& options, const TriangleMesh& mesh, size_t count, uint64_t seed);
 std::vector<Ray> cast_rays(const CameraRays& options);
 
+/// A direction in the coordinates of an area's frame, by angles in radians (at most 1e6): yaw about `up`, towards
+/// `right`; then pitch, down. (0, 0, 1) is straight on. Unit length up to rounding; the same bits on every machine. For
+/// ray casters of one's own.
+Vec3d angular_direction(double yaw, double pitch);
+
 /// A regular grid of width x height rays over an area's window, row by row from the top left, starting on the near
 /// face: the pixels of a picture seen from the area, not mirrored (the frame's `right` is on a viewer's left). Throws
 /// Error (kUsage or kBadArea).

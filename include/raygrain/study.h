@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "raygrain/accelerator.h"
 #include "raygrain/area.h"
 #include "raygrain/mesh.h"
 #include "raygrain/rays.h"
@@ -81,15 +82,18 @@ struct StudyTable {
 
 /// Runs what the folder does not hold yet. Each finished row is appended to results.partial.csv and brought to the
 /// disk; at the end all rows go, sorted, to results.csv, and the partial file is removed. A killed run loses the rows
-/// in progress, no others: call again with the same study. Times are of one row among `jobs` others: compare times of
-/// runs with one job only.
+/// in progress, no others: call again with the same study. study.txt keeps which study the folder belongs to: finished
+/// results of another one are never overwritten. Times are of one row among `jobs` others: compare times of runs with
+/// one job only.
 ///
-/// Throws Error: kUsage (two tasks with one key; the folder holds an unfinished run of another study, or is in use by
-/// another run), kMalformed (a damaged partial file), kUnwritable, kCancelled; and what tasks throw, naming the row.
+/// Throws Error: kUsage (two tasks with one key; a name with control characters; the folder holds results, or an
+/// unfinished run, of another study or of the same with other options, or is in use by another run), kNotFound (no
+/// rows, since what they need is missing), kMalformed (a damaged partial file), kUnwritable, kCancelled; and what tasks
+/// throw, naming the row.
 StudyTable run_study(const Study& study, const StudyRunOptions& options);
 
-/// What a table of trees says, line by line, for people: mean costs of each recipe over the tests that all of them
-/// have, and how far PAH's and SAH's predictions were off. Nothing for other tables.
+/// What a table of trees says, line by line, for people: mean costs of each recipe over its tests, together with those
+/// that have the same ones, and how far PAH's and SAH's predictions were off. Nothing for other tables.
 std::vector<std::string> study_summary(const StudyTable& table);
 
 /// Mean over the rows of a kind ("plane", "point"), combo and ray set of |real - estimated| / estimated, by `estimate`
@@ -133,6 +137,26 @@ struct StudyRays {
   size_t count = 1000;
 };
 
+/// How each row of a grid is made, for experiments that are to break the rules of the exactness contract or of the
+/// builders. An empty function means the default named beside it. Called from several threads.
+struct StudyRules {
+  /// The area that a recipe is really built and measured for: the area as it is.
+  std::function<InfluenceArea(const StudyScene&, const StudyArea&, const StudyRecipe&)> area;
+  /// The tree behind all local ones: StudyGrid::global.
+  std::function<Bvh(const TriangleMesh&)> global_tree;
+  /// Sets tree (its leaves hold indices of the mesh's triangles), log and measure: build_local_tree with the recipe.
+  /// Called with what `area` gave.
+  std::function<LocalTree(const TriangleMesh&, const InfluenceArea&, const StudyRecipe&)> local_tree;
+  /// The rays of a row: StudyRays. Called with what `area` gave.
+  std::function<std::vector<Ray>(const StudyScene&, const StudyArea&, const StudyRecipe&, const StudyRays&,
+                                 uint64_t seed)>
+      rays;
+  /// Makes, once a row, the rule that says which rays search the local tree: those that the area serves.
+  std::function<std::function<bool(const Ray&)>(const InfluenceArea&)> serves;
+  /// Is a hit in the local tree taken for the nearest of all? Those before the ray leaves the region.
+  std::function<bool(const InfluenceArea&, const Ray&, const Hit&)> accepts;
+};
+
 struct StudyGrid {
   std::string name;
   std::vector<StudyScene> scenes;
@@ -145,13 +169,15 @@ struct StudyGrid {
   CostModel costs;
   /// Rows to leave out; empty: none.
   std::function<bool(const StudyScene&, const StudyArea&, const StudyRecipe&, const StudyRays&)> leave_out = {};
+  StudyRules rules = {};
   std::vector<std::string> missing = {};
   /// Text of what else decides the numbers, like a file of measures: a run resumes only where it is the same.
   std::string source = {};
 };
 
-/// One task per row of the grid. Throws Error (kUsage) for a grid without scenes, recipes, rays, seeds or repeats,
-/// names that are there twice, and recipes that the registry does not know or an area cannot serve.
+/// One task per row of the grid. Throws Error, before any row runs: kUsage for a grid without scenes, recipes, rays,
+/// seeds or repeats, names that are there twice, parameters out of range, and recipes that the registry does not know
+/// or an area cannot serve; kNotFound where all scenes are missing; kLimit above a million rows.
 Study make_study(const StudyGrid& grid);
 
 /// The columns of every grid, in order; docs/formats.md has their meanings.
@@ -173,15 +199,16 @@ struct StudyPreset {
 /// paper, published, corrected, parameters, areas, memory, scaling, stress.
 std::vector<StudyPreset> study_presets();
 
-/// The grid behind paper, corrected, parameters and scaling, for changes and additions of one's own. Throws Error
-/// (kUsage).
+/// The grid behind paper, published, corrected, parameters and scaling, for changes and additions of one's own. Throws
+/// Error (kUsage).
 StudyGrid preset_grid(const std::string& name, const StudySources& sources);
 
 /// A preset by name. Throws Error (kUsage) for unknown names of studies and scenes.
 Study preset_study(const std::string& name, const StudySources& sources);
 
 /// A grid from a JSON file (format raygrain-study; docs/formats.md). Mesh files are searched beside the file, then in
-/// sources.scenes. Throws Error: kNotFound, kUnreadable, kMalformed, kUnsupported, naming the place.
+/// sources.scenes. Throws Error: kNotFound, kUnreadable, kMalformed, kUnsupported, naming the place; kUsage for names
+/// in sources.only that the file does not have, only.
 StudyGrid load_study_grid(const std::string& path, const StudySources& sources);
 
 }  // namespace raygrain

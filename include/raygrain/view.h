@@ -42,4 +42,7 @@ struct ViewOptions {
 std::string view_page(const Scene& scene, std::span<const ViewTree> trees, const ViewOptions& options,
                       const std::string& page, const std::string& path);
 
+/// Is this the text of a page that view_page made?
+bool is_view_page(const std::string& page);
+
 }  // namespace raygrain

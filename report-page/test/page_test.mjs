@@ -25,7 +25,7 @@ function makeReport() {
   const template = join(program, '../../share/raygrain/report-page.html');
   const files = Object.keys(results).map((name) => join(folder, name));
   const view = join(folder, 'my view.html');
-  writeFileSync(view, '<!doctype html><title>view</title>');
+  writeFileSync(view, '<!doctype html><title>view</title><script type="application/json">{"format":"raygrain-view","version":1}</script>');
   execFileSync(program, ['report', ...files, '--out', page, '--template', template, '--views', view], {
     stdio: ['ignore', 'ignore', 'inherit'],
   });
@@ -63,6 +63,8 @@ function checkCharts(all) {
   for (const number of [14, 16, 17, 18, 19, 20, 22])
     assert.ok(figures.includes(`paper-figure-${number}`), `figure ${number}`);
   assert.ok(figures.includes('table-1'), 'table 1');
+  assert.ok(figures.includes('table-2'), 'table 2, published values alone');
+  assert.ok(figures.includes('missing-charts'), 'what is missing is listed');
   assert.ok(figures.includes('areas-list-and-octrees-over-many-areas-city'), 'lines');
   for (const chart of all) {
     assert.match(chart.finding, /confirms|contradicts|beyond the paper|not measured/, chart.id);

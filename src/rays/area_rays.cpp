@@ -43,9 +43,7 @@ LocalRay local_ray(const PointArea& area, Vec2d window_half, PointSpread spread,
     const Vec3d direction{uniform.x * window_half.x, uniform.y * window_half.y, 1};
     return {direction * z, direction};
   }
-  const SineCosine yaw = sine_cosine(uniform.x * radians(area.fov_x) / 2);
-  const SineCosine pitch = sine_cosine(uniform.y * radians(area.fov_y) / 2);
-  const Vec3d direction{yaw.sine * pitch.cosine, -pitch.sine, yaw.cosine * pitch.cosine};
+  const Vec3d direction = angular_direction(uniform.x * radians(area.fov_x) / 2, uniform.y * radians(area.fov_y) / 2);
   return {direction * (z / direction.z), direction};
 }
 
@@ -66,6 +64,11 @@ Ray cast_ray(const AreaCaster& caster, Random random) {
 }
 
 }  // namespace
+
+Vec3d angular_direction(double yaw, double pitch) {
+  const SineCosine y = sine_cosine(yaw), p = sine_cosine(pitch);
+  return {y.sine * p.cosine, -p.sine, y.cosine * p.cosine};
+}
 
 std::vector<Ray> cast_rays(const AreaRays& options, size_t count, uint64_t seed) {
   check_options(options);

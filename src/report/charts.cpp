@@ -85,6 +85,19 @@ std::vector<std::string> scene_names(std::span<const ResultRow> rows) {
   return in_order(kPaperScenes, distinct(rows, [](const ResultRow& row) { return row.scene; }));
 }
 
+size_t paper_scene_count(std::span<const ResultRow> rows, size_t count) {
+  return static_cast<size_t>(std::count_if(kPaperScenes.begin(), kPaperScenes.begin() + count, [&](std::string_view s) {
+    return std::any_of(rows.begin(), rows.end(), [&](const ResultRow& row) { return row.scene == s; });
+  }));
+}
+
+std::string scenes_note(std::span<const ResultRow> rows) {
+  const size_t count = paper_scene_count(rows, kPaperScenes.size());
+  if (count == kPaperScenes.size()) return {};
+  return fmt::format("{} of the paper's {} scenes were measured; the published values are means over all of them.",
+                     count, kPaperScenes.size());
+}
+
 std::vector<std::string> own_recipes(const StudyResults& study) {
   std::vector<std::string> recipes = distinct(study.rows, [](const ResultRow& row) { return row.recipe; });
   std::erase_if(recipes, [](const std::string& recipe) { return recipe.empty() || is_paper_recipe(recipe); });

@@ -28,6 +28,9 @@ Chart overlap_figure(const StudyResults& study);
 // Its tables.
 Chart parameter_table();
 Chart tuning_table(const StudyResults& study);
+/// Figures, tables and studies that `sections` do not hold, each with the command that makes it; no rows where all are
+/// there.
+Chart missing_charts(std::span<const ChartSection> sections);
 
 /// All recipes against the baseline: pruned cost, time, full cost; by group, by scene; prediction; building.
 std::vector<Chart> recipe_charts(const StudyResults& study);
@@ -60,6 +63,11 @@ std::vector<std::string> group_labels(std::span<const ResultRow> rows);
 /// Recipes and scenes that occur, the paper's first, in its order.
 std::vector<std::string> recipe_names(std::span<const ResultRow> rows);
 std::vector<std::string> scene_names(std::span<const ResultRow> rows);
+
+/// How many of the first `count` of the paper's scenes the rows hold.
+size_t paper_scene_count(std::span<const ResultRow> rows, size_t count);
+/// "5 of the paper's 8 scenes were measured ..."; empty where all were.
+std::string scenes_note(std::span<const ResultRow> rows);
 
 /// A chart over a number: means of `value` over the rows of each series at each x.
 ChartPanel line_panel(std::span<const ResultRow> rows, const std::string& title, const RowText& series,

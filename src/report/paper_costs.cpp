@@ -29,13 +29,6 @@ bool is_own_model(const ResultRow& row) {
   return std::find(kPaperScenes.begin(), end, row.scene) != end;
 }
 
-/// How many of the scenes from `begin` to `end` the rows hold.
-size_t scene_count(std::span<const ResultRow> rows, size_t count) {
-  return static_cast<size_t>(std::count_if(kPaperScenes.begin(), kPaperScenes.begin() + count, [&](std::string_view s) {
-    return std::any_of(rows.begin(), rows.end(), [&](const ResultRow& row) { return row.scene == s; });
-  }));
-}
-
 double point_value(std::span<const ChartPoint> points, std::string_view series, std::string_view group) {
   for (const ChartPoint& p : points)
     if (p.series == series && p.group == group) return p.y;
@@ -137,15 +130,12 @@ Chart cost_figure(const StudyResults& study, const CostFigure& figure) {
   Chart chart{.label = std::string(figure.label), .title = std::string(figure.title)};
   const std::vector<std::string> recipes = figure_recipes(study, figure);
   chart.panels = user_bars(study.rows, recipes);
-  const size_t scenes = scene_count(study.rows, kPaperScenes.size());
-  const bool comparable = scene_count(study.rows, kOwnModels) == kOwnModels;
+  const std::string note = scenes_note(study.rows);
+  const bool comparable = paper_scene_count(study.rows, kOwnModels) == kOwnModels;
   chart.panels.push_back(cost_panel(study.rows, recipes, "As in the paper: full-traversal cost",
                                     &PublishedCost::eight_scenes, "printed, mean of 8 scenes"));
-  if (scenes == kPaperScenes.size())
-    chart.notes.push_back(distance_note(chart.panels.back(), "the eight scenes, two of which are substitutes"));
-  else
-    chart.notes.push_back(
-        fmt::format("{} of the paper's 8 scenes were measured; the published means are over all 8.", scenes));
+  chart.notes.push_back(
+      note.empty() ? distance_note(chart.panels.back(), "the eight scenes, two of which are substitutes") : note);
   if (comparable) {
     chart.panels.push_back(cost_panel(filtered(study.rows, is_own_model), recipes,
                                       "The same over the six scenes whose models are the authors' own",

@@ -61,6 +61,7 @@ Chart split_time_figure(const StudyResults& study) {
                     "another threshold).",
                     short_number(facing), short_number(longest), kOrientationsOfSpfh, kOrientationsOfLsph));
   }
+  if (const std::string note = scenes_note(study.rows); !note.empty()) chart.notes.push_back(note);
   const PairedRatio ratio = paired_ratio(study.rows, kFacing, kBaseline, choosing);
   if (!timed || ratio.count == 0) {
     chart.finding =
@@ -76,6 +77,7 @@ Chart split_time_figure(const StudyResults& study) {
       short_number(ratio.mean), counted(ratio.count, "build"),
       short_number(paired_ratio(study.rows, kFacing, kBaseline, build).mean));
   chart.notes.emplace_back("Times of other machines cannot be compared; the paper compares the two heuristics only.");
+  chart.notes.emplace_back("Within a factor of 1.5 times count as the same: single ones are noisy.");
   return chart;
 }
 

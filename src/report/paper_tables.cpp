@@ -144,7 +144,9 @@ Chart tuning_table(const StudyResults& study) {
   judge(chart, study, "pruned_cost", sentence, "The pruned cost, which users pay,");
   chart.verdict = Verdict::kMissing;  // the paper speaks of the other cost
   judge(chart, study, "real_cost", sentence, sentence.empty() ? "The full-traversal cost" : "the full-traversal cost");
-  chart.finding = sentence + ".";
+  chart.finding = sentence.empty() ? "Not measured here: only the published values are shown. Run raygrain study "
+                                     "parameters, and give its results to the report, too."
+                                   : sentence + ".";
   if (sentence.empty()) return chart;
   for (const Column& column : kColumns)
     if (any_measured(study.rows, column_value(column.column))) chart.panels.push_back(tuning_panel(study, column));

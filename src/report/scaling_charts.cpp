@@ -64,7 +64,7 @@ std::vector<Chart> scaling_charts(const StudyResults& study) {
     }
   chart.finding =
       fmt::format("From {} to {} triangles; at the largest size users pay least with {}: a pruned cost of {} per ray.",
-                  short_number(least), short_number(most), best, short_number(cost));
+                  fmt::format("{:.0f}", least), fmt::format("{:.0f}", most), best, short_number(cost));
   return {std::move(chart)};
 }
 

@@ -124,8 +124,19 @@ StudyReport make_study_report(std::span<const ResultTable> tables) {
     add_facts(report, study);
     report.sections.push_back(section_of(study));
   }
+  std::vector<Chart> tables_of_paper{parameter_table()};
+  const auto has_tuning = [](const ChartSection& section) {
+    return std::any_of(section.charts.begin(), section.charts.end(),
+                       [](const Chart& c) { return c.label == "Table 2"; });
+  };
+  if (std::none_of(report.sections.begin(), report.sections.end(), has_tuning)) {
+    tables_of_paper.push_back(tuning_table({}));
+    tables_of_paper.back().id = "table-2";
+  }
   std::vector<Chart>& first = report.sections.front().charts;
-  first.insert(first.begin(), parameter_table());
+  first.insert(first.begin(), tables_of_paper.begin(), tables_of_paper.end());
+  if (Chart missing = missing_charts(report.sections); !missing.table.rows.empty())
+    report.sections.push_back({"not-in-this-report", "Not in this report", "", {std::move(missing)}});
   return report;
 }
 

@@ -111,6 +111,10 @@ Json tree_json(const ViewTree& tree, const Scene& scene, std::span<const Bounds>
 
 }  // namespace
 
+bool is_view_page(const std::string& page) {
+  return page.find(R"({"format":"raygrain-view","version":)") != std::string::npos;
+}
+
 std::string view_page(const Scene& scene, std::span<const ViewTree> trees, const ViewOptions& options,
                       const std::string& page, const std::string& path) {
   std::string lines;

@@ -1,6 +1,8 @@
 #include "study/journal.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <filesystem>
 #include <ostream>
 #include <set>
 #include <system_error>
@@ -37,10 +39,38 @@ std::string title(const Study& study) {
   throw Error(ErrorCode::kUnwritable, path, "cannot write: " + std::generic_category().message(errno));
 }
 
+/// Results of before study.txt was written: the same columns, and the same rows?
+bool are_of(const StudyTable& table, const Study& study) {
+  if (table.header != header_of(study) || table.rows.size() != study.tasks.size()) return false;
+  std::set<StudyKey> keys;
+  for (const StudyTask& task : study.tasks) keys.insert(task.key);
+  return std::all_of(table.rows.begin(), table.rows.end(), [&](const auto& row) {
+    const auto key = key_of(row);
+    return key && keys.contains(*key);
+  });
+}
+
 }  // namespace
+
+/// Results take hours: those of another study, or of another grid by the same name, stay.
+void Journal::check_finished(const Study& study) const {
+  const std::string results = folder_ + "/results.csv", note = folder_ + "/study.txt";
+  if (!std::filesystem::exists(results)) return;
+  bool same = false;
+  try {
+    same = std::filesystem::exists(note) ? read_whole_file(note) == title(study) + '\n'
+                                         : are_of(load_study_table(results), study);
+  } catch (const Error&) {
+    // What cannot be read is not this study's.
+  }
+  if (!same)
+    throw Error(ErrorCode::kUsage, results, "holds the results of another study, or of this one with other options",
+                "Choose another folder with --out, or remove that file first");
+}
 
 Journal::Journal(const Study& study, const std::string& folder)
     : folder_(folder), path_(folder + "/results.partial.csv") {
+  check_finished(study);
   make_output_folder(folder);
   descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
   if (descriptor_ < 0) fail_write(path_);
@@ -48,6 +78,7 @@ Journal::Journal(const Study& study, const std::string& folder)
     if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
       throw Error(ErrorCode::kUsage, folder, "another run is writing here", "Wait for it, or choose another folder");
     read_rows(study);
+    write_file_atomically(folder + "/study.txt", [&](std::ostream& out) { out << title(study) << '\n'; });
   } catch (...) {
     ::close(descriptor_);
     throw;
@@ -67,7 +98,7 @@ void Journal::read_rows(const Study& study) {
 
   const size_t first_end = bytes.find('\n');
   if (bytes.substr(0, first_end) != title(study))
-    throw Error(ErrorCode::kUsage, path_, "holds an unfinished run of another study, or with other options",
+    throw Error(ErrorCode::kUsage, path_, "holds an unfinished run of another study, or of this one with other options",
                 "Finish that one, remove the file, or choose another folder");
   std::set<StudyKey> wanted;
   for (const StudyTask& task : study.tasks) wanted.insert(task.key);

@@ -11,8 +11,9 @@ namespace raygrain::study {
 
 class Journal {
  public:
-  /// Opens or creates FOLDER/results.partial.csv for this study alone. A last line without its end, which a kill
-  /// leaves, is cut off. Throws Error: kUsage (rows of another study, another run is writing), kMalformed, kUnwritable.
+  /// Opens or creates FOLDER/results.partial.csv for this study alone, and says so in FOLDER/study.txt. A last line
+  /// without its end, which a kill leaves, is cut off. Throws Error: kUsage (rows or finished results of another study,
+  /// another run is writing), kMalformed, kUnwritable; nothing is changed then.
   Journal(const Study& study, const std::string& folder);
   ~Journal();
   Journal(const Journal&) = delete;
@@ -28,6 +29,7 @@ class Journal {
   void finish(const std::vector<std::string>& header);
 
  private:
+  void check_finished(const Study& study) const;
   void read_rows(const Study& study);
   void write(const std::string& text);
 

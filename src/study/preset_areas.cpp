@@ -147,6 +147,7 @@ struct LazyAreas {
 Study areas_study(const StudySources& sources) {
   Study study{"areas", columns(), {}, "rays " + std::to_string(sources.rays), {}};
   std::vector<StudyScene> scenes{procedural_scene("procedural:city", "City")};
+  check_wanted(sources, {"City", "Sponza"});
   StudySources sponza = sources;
   sponza.only = {"Sponza"};
   if (is_wanted(sources, "Sponza") && !sources.quick)

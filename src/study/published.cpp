@@ -1,7 +1,8 @@
 // The 256 tests with the rules of the program that made the published numbers of "Ray Distribution Aware Heuristics for
 // Bounding Volume Hierarchies Construction in Ray Tracing" (2024). Everything in which that program differs from the
 // paper's text, or from what is right, stands in this file and uses public injection points only: it is also the proof
-// that they reach far enough. The study `paper` runs the same tests as they should be.
+// that they reach far enough. The study `paper` runs the same tests as they should be. Beside public headers it
+// includes the one that declares its only function.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,21 +10,20 @@
 #include <numeric>
 #include <random>
 
+#include "raygrain/accelerator.h"
 #include "raygrain/build.h"
+#include "raygrain/error.h"
 #include "raygrain/heuristics.h"
+#include "raygrain/rays.h"
+#include "raygrain/study.h"
 #include "raygrain/top_level.h"
 
-#include "base/trigonometry.h"
 #include "study/presets.h"
-#include "study/scene_pool.h"
-#include "study/sources.h"
-#include "study/tree_row.h"
 
 namespace raygrain::study {
 namespace {
 
-// One constant of that program served as every tolerance.
-constexpr float kTolerance = 0.01f;
+constexpr float kTolerance = 0.01f;  // of everything in that program
 constexpr uint32_t kOctreeLevel = 5;
 /// A combination as published. The point tests that were printed as PAH+LSPH had been made with another recipe; both
 /// are run.
@@ -41,11 +41,17 @@ constexpr std::array<Combo, 5> kCombos{{{"PAH+SPFH", true, true, 0.4f, false, fa
                                         {"PAH+LSPH-as-published", false, true, 0.99f, false, true}}};
 constexpr Combo kGlobal{"", false, false, 0.4f, false, false};
 
+const Combo& combo_of(const StudyRecipe& recipe) {
+  for (const Combo& combo : kCombos)
+    if (combo.name == recipe.combo) return combo;
+  throw Error(ErrorCode::kUsage, recipe.combo, "is none of the published runs' recipes", "Add it to the grid of paper");
+}
+
 // --- Rays: the engine that made the random scenes went on to draw the rays, test by test. ---
 
 constexpr uint64_t kSceneDraws = uint64_t{100 + 1000} * 9 * 2;  // two random scenes, nine doubles a triangle
-constexpr uint64_t kPlaneDraws = 3 * 2, kPointDraws = 2 * 2;    // a ray: depth (unused), x, y; or yaw, pitch
-constexpr uint64_t kTestsPerSection = 7 * 4;                    // Sponza had runs of its own
+constexpr uint64_t kPlaneDraws = 6, kPointDraws = 4;            // a ray: depth (unused), x, y; or yaw, pitch
+constexpr uint64_t kTestsPerSection = 28;                       // Sponza had runs of its own
 
 double draw(std::mt19937& engine, double half) {
   const double low = static_cast<double>(engine()), high = static_cast<double>(engine());
@@ -67,9 +73,9 @@ uint64_t draws_before(const StudyArea& area, const std::string& scene, bool seco
 
 /// Not uniform on the near plane: uniform in yaw and pitch, so that up to a fifth leave the frustum.
 Ray draw_ray(std::mt19937& engine, const PointArea& area, const Frame& frame) {
-  const SineCosine yaw = sine_cosine(draw(engine, radians(static_cast<double>(area.fov_x) / 2)));
-  const SineCosine pitch = sine_cosine(draw(engine, radians(static_cast<double>(area.fov_y) / 2)));
-  const Vec3d direction{yaw.sine * pitch.cosine, -pitch.sine, yaw.cosine * pitch.cosine};
+  constexpr double kRadians = 3.14159265358979323846 / 180;
+  const double yaw = draw(engine, static_cast<double>(area.fov_x) / 2 * kRadians);
+  const Vec3d direction = angular_direction(yaw, draw(engine, static_cast<double>(area.fov_y) / 2 * kRadians));
   const Vec3d origin = direction * (static_cast<double>(area.near_z) / direction.z);
   return {to_float(to_world(frame, origin)), to_float(to_world_direction(frame, direction))};
 }
@@ -77,17 +83,20 @@ Ray draw_ray(std::mt19937& engine, const PointArea& area, const Frame& frame) {
 Ray draw_ray(std::mt19937& engine, const PlaneArea& area, const Frame& frame) {
   engine.discard(2);
   const double x = draw(engine, static_cast<double>(area.half_width));
-  const double y = draw(engine, static_cast<double>(area.half_height));
-  return {to_float(to_world(frame, {x, y, 0})), to_float(frame.forward)};
+  return {to_float(to_world(frame, {x, draw(engine, static_cast<double>(area.half_height)), 0})),
+          to_float(frame.forward)};
 }
 
-std::vector<Ray> draw_rays(const StudyArea& area, const Frame& frame, uint64_t before, size_t count, uint64_t seed) {
+std::vector<Ray> draw_rays(const StudyScene& scene, const StudyArea& area, const StudyRecipe& recipe,
+                           const StudyRays& rays, uint64_t seed) {
+  const AreaGeometry geometry(area.area);
   std::mt19937 engine(static_cast<uint32_t>(seed));
-  engine.discard(before);
-  std::vector<Ray> rays;
-  for (size_t i = 0; i < count; ++i)
-    rays.push_back(std::visit([&](const auto& shape) { return draw_ray(engine, shape, frame); }, area.area.shape));
-  return rays;
+  engine.discard(draws_before(area, scene.name, combo_of(recipe).second_section, rays.count));
+  std::vector<Ray> drawn;
+  for (size_t i = 0; i < rays.count; ++i)
+    drawn.push_back(
+        std::visit([&](const auto& shape) { return draw_ray(engine, shape, geometry.frame()); }, area.area.shape));
+  return drawn;
 }
 
 // --- Membership: by cells of the octree, with tolerance; by vertices alone. ---
@@ -163,11 +172,6 @@ void published_planes(const NodeContext& node, const Bounds&, int axis, uint32_t
     planes.push_back(lo + length * static_cast<float>(i) / static_cast<float>(bins));
 }
 
-/// Of equal planes the first, whatever it does.
-bool published_preference(const PlanePrice& candidate, const PlanePrice& best) {
-  return candidate.cost < best.cost;
-}
-
 /// Figure 9, but the root stops after its first axis that splits, since its father's probability was infinite, and the
 /// fallback's split always wins. No probability at all (0 / 0) passes for satisfactory.
 SplitVerdict published_decision(const SplitState& state, const PaperParameters& parameters) {
@@ -192,7 +196,7 @@ BuildOptions published_options(const Combo& combo, const InfluenceArea* area, co
   fallback.measure = surface;
   fallback.orientation = longest_axis_orientation();
   fallback.planes = published_planes;
-  fallback.preference = published_preference;
+  fallback.preference = [](const PlanePrice& a, const PlanePrice& best) { return a.cost < best.cost; };  // or the first
   fallback.decision = published_fallback_decision;
 
   BuildOptions options;
@@ -237,64 +241,60 @@ Bvh build_published_global(const TriangleMesh& mesh) {
   return build_published(mesh, all, published_options(kGlobal, nullptr, box_of(mesh, all)), nullptr);
 }
 
+LocalTree build_published_local(const TriangleMesh& mesh, const InfluenceArea& area, const StudyRecipe& recipe) {
+  const AreaGeometry geometry(area);
+  const Octree octree(geometry.region());
+  const std::vector<uint32_t> members =
+      area_members(mesh, geometry, [&octree](const AreaGeometry&, Vec3 a, Vec3 b, Vec3 c) {
+        return octree.lists(a) || octree.lists(b) || octree.lists(c);
+      });
+  const BuildOptions options = published_options(combo_of(recipe), &area, box_of(mesh, members));
+  LocalTree local;
+  local.tree = std::make_shared<const Bvh>(build_published(mesh, members, options, &local.log));
+  local.measure = options.strategy.measure;
+  return local;
+}
+
 /// A slip of the published run.
-StudyArea published_area(const StudyArea& area, const std::string& scene, const Combo& combo) {
-  StudyArea result = area;
-  auto* plane = std::get_if<PlaneArea>(&result.area.shape);
-  if (plane != nullptr && scene == "Suzanne" && area.variant == "oblique" && std::string_view(combo.name) == "PAH+LSPH")
+InfluenceArea published_area(const StudyScene& scene, const StudyArea& area, const StudyRecipe& recipe) {
+  InfluenceArea result = area.area;
+  auto* plane = std::get_if<PlaneArea>(&result.shape);
+  if (plane != nullptr && scene.name == "Suzanne" && area.variant == "oblique" && recipe.combo == "PAH+LSPH")
     plane->half_width = plane->half_height = 0.9f;
   return result;
 }
 
-std::vector<std::string> run_test(const SceneTrees& scene, const StudyArea& area, const Combo& combo, uint64_t before,
-                                  size_t rays, uint64_t seed) {
-  static const std::vector<StudyColumn> columns = grid_columns();
-  const AreaGeometry geometry(area.area);
-  const Octree octree(geometry.region());
-  const std::vector<uint32_t> members =
-      area_members(scene.mesh, geometry, [&octree](const AreaGeometry&, Vec3 a, Vec3 b, Vec3 c) {
-        return octree.lists(a) || octree.lists(b) || octree.lists(c);
-      });
-  const BuildOptions options = published_options(combo, &area.area, box_of(scene.mesh, members));
-  LocalTree local;
-  local.area = area.area;
-  local.tree = std::make_shared<const Bvh>(build_published(scene.mesh, members, options, &local.log));
-
-  const std::vector<Ray> cast = draw_rays(area, geometry.frame(), before, rays, seed);
-  TreeTest test = exact_test(scene, local, geometry, cast, {});
-  test.serves = [&octree](const Ray& ray) { return octree.lists(ray.origin); };
-  test.accepts = [](const Ray&, const Hit&) { return true; };  // any local hit passed for the nearest
-  Cells cells(columns);
-  set_recipe_cells(cells, {combo.pah ? "PAH" : "SAH", combo.spfh ? "SPFH" : "LSPH", "paper", {}}, options);
-  set_tree_cells(cells, test, options.strategy.measure);
-  return cells.take();
+StudyRules published_rules() {
+  StudyRules rules;
+  rules.area = published_area;
+  rules.global_tree = build_published_global;
+  rules.local_tree = build_published_local;
+  rules.rays = draw_rays;
+  rules.serves = [](const InfluenceArea& area) {
+    const auto octree = std::make_shared<const Octree>(AreaGeometry(area).region());
+    return [octree](const Ray& ray) { return octree->lists(ray.origin); };
+  };
+  rules.accepts = [](const InfluenceArea&, const Ray&, const Hit&) { return true; };  // any hit passed for the nearest
+  return rules;
 }
 
 }  // namespace
 
-Study published_study(const StudySources& sources) {
-  Study study{"published", grid_columns(), {}, "rays " + std::to_string(sources.rays), {}};
-  for (const StudyScene& scene : paper_scenes(sources, study.missing)) {
-    const auto lazy = std::make_shared<LazyScene>([load = scene.load] {
-      TriangleMesh mesh = load();
-      Bvh global = build_published_global(mesh);
-      return make_scene_trees(std::move(mesh), std::move(global));
-    });
-    for (const StudyArea& area : scene.areas)
-      for (const Combo& combo : kCombos) {
-        const bool is_plane = std::holds_alternative<PlaneArea>(area.area.shape);
-        if (combo.mislabelled && is_plane) continue;
-        const uint64_t before = draws_before(area, scene.name, combo.second_section, sources.rays);
-        const StudyArea own = published_area(area, scene.name, combo);
-        study.add(
-            {scene.name, is_plane ? "plane" : "point", area.variant, combo.name, "", "published", sources.seed},
-            [=, rays = sources.rays, seed = sources.seed] {
-              return run_test(lazy->get(), own, combo, before, rays, seed);
-            },
-            scene.weight);
-      }
+StudyGrid published_grid(const StudySources& sources) {
+  StudyGrid grid = preset_grid("paper", sources);
+  grid.name = "published";
+  grid.recipes.clear();
+  for (const Combo& combo : kCombos) {
+    grid.recipes.push_back({combo.name, "", {combo.pah ? "PAH" : "SAH", combo.spfh ? "SPFH" : "LSPH", "paper", {}}});
+    grid.recipes.back().recipe.parameters.split_plane_quality_threshold = combo.threshold;
   }
-  return study;
+  grid.rays = {{"published", PointSpread::kAngle, sources.rays}};
+  grid.rules = published_rules();
+  grid.leave_out = [](const StudyScene&, const StudyArea& area, const StudyRecipe& recipe, const StudyRays&) {
+    return combo_of(recipe).mislabelled && std::holds_alternative<PlaneArea>(area.area.shape);
+  };
+  grid.source = "the rules of the published runs";
+  return grid;
 }
 
 }  // namespace raygrain::study

@@ -9,23 +9,34 @@
 
 #include "base/parallel.h"
 #include "study/journal.h"
+#include "study/names.h"
 #include "study/table.h"
 
 namespace raygrain {
+
+namespace study {
+
+void check_study(const Study& study) {
+  if (study.tasks.empty() && !study.missing.empty()) fail_without_rows(study.name, study.missing);
+  if (study.tasks.empty()) throw Error(ErrorCode::kUsage, study.name, "has no rows", "Check the names of scenes");
+  std::set<StudyKey> keys;
+  for (const StudyTask& task : study.tasks) {
+    const StudyKey& key = task.key;
+    if (!keys.insert(key).second)
+      throw Error(ErrorCode::kUsage, study.name, "two rows have one key: " + describe(key),
+                  "Give each recipe its own combo or setting");
+    for (const std::string& name : {study.name, key.scene, key.kind, key.variant, key.combo, key.setting, key.ray_set})
+      if (!is_plain_name(name))
+        throw Error(ErrorCode::kUsage, study.name, "a name of row " + describe(key) + " has control characters",
+                    "Names are one line of text");
+  }
+}
+
+}  // namespace study
+
 namespace {
 
 using study::Journal;
-
-void check_keys(const Study& study) {
-  if (study.tasks.empty())
-    throw Error(ErrorCode::kUsage, study.name, "has no rows",
-                study.missing.empty() ? "Check the names of scenes" : study.missing.front());
-  std::set<StudyKey> keys;
-  for (const StudyTask& task : study.tasks)
-    if (!keys.insert(task.key).second)
-      throw Error(ErrorCode::kUsage, study.name, "two rows have one key: " + study::describe(task.key),
-                  "Give each recipe its own combo or setting");
-}
 
 class Runner {
  public:
@@ -109,7 +120,7 @@ void Study::add(const StudyKey& key, std::function<std::vector<std::string>()> r
 }
 
 StudyTable run_study(const Study& study, const StudyRunOptions& options) {
-  check_keys(study);
+  study::check_study(study);
   return Runner(study, options).run();
 }
 

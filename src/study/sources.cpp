@@ -21,17 +21,20 @@ double weight_of(std::string_view scene) {
   return scene == "Random1000" || scene == "Suzanne" ? 1 : 6;
 }
 
-void check_names(const StudySources& sources, const std::vector<StudyScene>& extra) {
+}  // namespace
+
+std::vector<std::string_view> paper_scene_names() {
   std::vector<std::string_view> names;
   for (const PaperExperiment& experiment : paper_experiments())
     if (names.empty() || names.back() != experiment.scene) names.push_back(experiment.scene);
-  for (const StudyScene& scene : extra) names.push_back(scene.name);
+  return names;
+}
+
+void check_wanted(const StudySources& sources, const std::vector<std::string_view>& names) {
   for (const std::string& name : sources.only)
     if (std::find(names.begin(), names.end(), name) == names.end())
       throw Error(ErrorCode::kUsage, name, "is no scene of this study", suggestion(name, names));
 }
-
-}  // namespace
 
 bool is_wanted(const StudySources& sources, const std::string& scene) {
   return sources.only.empty() || std::find(sources.only.begin(), sources.only.end(), scene) != sources.only.end();
@@ -60,7 +63,9 @@ StudyScene procedural_scene(const std::string& text, const std::string& name) {
 
 std::vector<StudyScene> paper_scenes(const StudySources& sources, std::vector<std::string>& missing,
                                      const std::vector<StudyScene>& extra) {
-  check_names(sources, extra);
+  std::vector<std::string_view> names = paper_scene_names();
+  for (const StudyScene& scene : extra) names.push_back(scene.name);
+  check_wanted(sources, names);
   std::vector<StudyScene> scenes;
   std::string_view left_out;
   for (const PaperExperiment& experiment : paper_experiments()) {
@@ -69,7 +74,7 @@ std::vector<StudyScene> paper_scenes(const StudySources& sources, std::vector<st
     std::string path(experiment.source);
     const bool is_file = !path.starts_with("procedural:");
     if (is_file) {
-      path = sources.scenes.empty() ? "" : sources.scenes + '/' + path;
+      path = sources.scenes.empty() ? std::string{} : (std::filesystem::path(sources.scenes) / path).string();
       std::error_code none;
       if (path.empty() || !std::filesystem::is_regular_file(path, none)) {
         left_out = experiment.scene;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "raygrain/study.h"
@@ -18,6 +19,12 @@ StudyScene procedural_scene(const std::string& text, const std::string& name);
 
 /// The mesh of a source ("procedural:..." or a file), each vertex times `scale`.
 TriangleMesh load_scaled(const std::string& path, float scale);
+
+/// Throws Error (kUsage) for what in `sources.only` is none of the names.
+void check_wanted(const StudySources& sources, const std::vector<std::string_view>& names);
+
+/// Names of the paper's scenes.
+std::vector<std::string_view> paper_scene_names();
 
 /// Is it one of the scenes asked for?
 bool is_wanted(const StudySources& sources, const std::string& scene);

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <tuple>
 
 #include <fmt/format.h>
 
@@ -12,29 +11,75 @@
 namespace raygrain {
 namespace {
 
-/// The columns that a summary needs, by index; empty for other tables.
-struct Columns {
-  size_t scene, kind, variant, combo, setting, ray_set, real, pruned, fallback;
-};
-
 bool is_table_of_trees(const StudyTable& table) {
   return std::find(table.header.begin(), table.header.end(), "real_cost_local") != table.header.end();
 }
 
-Columns columns_of(const StudyTable& table) {
-  return {table.column("scene"),           table.column("kind"),        table.column("variant"),
-          table.column("combo"),           table.column("setting"),     table.column("ray_set"),
-          table.column("real_cost_local"), table.column("pruned_cost"), table.column("real_cost_with_fallback")};
-}
+using Test = std::vector<std::string>;  // scene, kind, variant, ray set
 
-struct Means {
+struct RecipeMeans {
+  std::string recipe;
+  std::set<Test> tests;
   size_t rows = 0;
-  double real = 0, pruned = 0, fallback = 0;
+  double pruned = 0, real = 0, fallback = 0;
 };
 
-std::string recipe_of(const StudyTable& table, size_t row, const Columns& c) {
-  const std::vector<std::string>& cells = table.rows[row];
-  return cells[c.combo] + (cells[c.setting].empty() ? "" : ", " + cells[c.setting]);
+/// Sorted by the recipes' names.
+std::vector<RecipeMeans> means_of_recipes(const StudyTable& table) {
+  const size_t combo = table.column("combo"), setting = table.column("setting"), pruned = table.column("pruned_cost"),
+               real = table.column("real_cost_local"), fallback = table.column("real_cost_with_fallback");
+  std::map<std::string, RecipeMeans> all;
+  for (size_t row = 0; row < table.rows.size(); ++row) {
+    const std::vector<std::string>& cells = table.rows[row];
+    const std::string recipe = cells[combo] + (cells[setting].empty() ? "" : ", " + cells[setting]);
+    RecipeMeans& m = all[recipe];
+    m.recipe = recipe;
+    Test test;
+    for (const char* column : {"scene", "kind", "variant", "ray_set"}) test.push_back(cells[table.column(column)]);
+    m.tests.insert(std::move(test));
+    ++m.rows;
+    m.pruned += table.number(row, pruned);
+    m.real += table.number(row, real);
+    m.fallback += table.number(row, fallback);
+  }
+  std::vector<RecipeMeans> means;
+  means.reserve(all.size());
+  for (auto& [recipe, m] : all) means.push_back(std::move(m));
+  return means;
+}
+
+/// Means over other tests than a recipe's own cannot be held against its: recipes with the same tests stand together,
+/// those with the most first.
+std::vector<std::vector<const RecipeMeans*>> by_tests(const std::vector<RecipeMeans>& means) {
+  std::vector<std::vector<const RecipeMeans*>> blocks;
+  for (const RecipeMeans& m : means) {
+    const auto same = [&](const auto& block) { return block.front()->tests == m.tests; };
+    const auto block = std::find_if(blocks.begin(), blocks.end(), same);
+    if (block != blocks.end())
+      block->push_back(&m);
+    else
+      blocks.push_back({&m});
+  }
+  std::stable_sort(blocks.begin(), blocks.end(),
+                   [](const auto& a, const auto& b) { return a.front()->tests.size() > b.front()->tests.size(); });
+  return blocks;
+}
+
+void add_means(std::vector<std::string>& lines, const std::vector<RecipeMeans>& means) {
+  const auto blocks = by_tests(means);
+  for (const auto& block : blocks) {
+    const size_t tests = block.front()->tests.size();
+    lines.push_back(
+        blocks.size() == 1
+            ? fmt::format("means over the {} tests of all recipes:", tests)
+            : fmt::format("means over the {} tests of these recipes, not to be held against others:", tests));
+    lines.push_back(fmt::format("  {:<46} {:>8} {:>8} {:>14}", "recipe", "pruned", "real", "with fallback"));
+    for (const RecipeMeans* m : block) {
+      const auto n = static_cast<double>(m->rows);
+      lines.push_back(
+          fmt::format("  {:<46} {:>8.2f} {:>8.2f} {:>14.2f}", m->recipe, m->pruned / n, m->real / n, m->fallback / n));
+    }
+  }
 }
 
 }  // namespace
@@ -59,37 +104,8 @@ double prediction_error(const StudyTable& table, const std::string& estimate, co
 
 std::vector<std::string> study_summary(const StudyTable& table) {
   if (!is_table_of_trees(table) || table.rows.empty()) return {};
-  const Columns c = columns_of(table);
-  std::set<std::string> recipes;
-  std::map<std::vector<std::string>, std::set<std::string>> tests;
-  const auto test_of = [&](size_t row) {
-    const std::vector<std::string>& cells = table.rows[row];
-    return std::vector<std::string>{cells[c.scene], cells[c.kind], cells[c.variant], cells[c.ray_set]};
-  };
-  for (size_t row = 0; row < table.rows.size(); ++row) {
-    recipes.insert(recipe_of(table, row, c));
-    tests[test_of(row)].insert(recipe_of(table, row, c));
-  }
-  std::map<std::string, Means> means;
-  size_t common = 0;
-  for (const auto& [test, of_test] : tests) common += of_test.size() == recipes.size() ? 1 : 0;
-  for (size_t row = 0; row < table.rows.size(); ++row) {
-    if (common > 0 && tests[test_of(row)].size() != recipes.size()) continue;
-    Means& m = means[recipe_of(table, row, c)];
-    ++m.rows;
-    m.real += table.number(row, c.real);
-    m.pruned += table.number(row, c.pruned);
-    m.fallback += table.number(row, c.fallback);
-  }
-  std::vector<std::string> lines{
-      common > 0 ? fmt::format("means over the {} tests that all recipes have:", common)
-                 : std::string("means over each recipe's own tests:"),
-      fmt::format("  {:<46} {:>8} {:>8} {:>14}", "recipe", "pruned", "real", "with fallback")};
-  for (const auto& [recipe, m] : means) {
-    const double n = static_cast<double>(m.rows);
-    lines.push_back(
-        fmt::format("  {:<46} {:>8.2f} {:>8.2f} {:>14.2f}", recipe, m.pruned / n, m.real / n, m.fallback / n));
-  }
+  std::vector<std::string> lines;
+  add_means(lines, means_of_recipes(table));
   for (const char* kind : {"plane", "point"})
     for (const char* rays : {"matched", "angular", "published"}) {
       const double pah = prediction_error(table, "estimated_pah", kind, {}, rays);

@@ -43,14 +43,15 @@ void limit(int resource, const std::optional<rlim_t>& bytes) {
   redirect(options.standard_output.empty() ? output_path : options.standard_output, STDOUT_FILENO);
   redirect(error_path, STDERR_FILENO);
   if (options.closed_reader) redirect_to_nobody();
+  if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(kCannotStart);
   limit(RLIMIT_FSIZE, options.file_size);
   limit(RLIMIT_AS, options.memory);
   ::signal(SIGINT, SIG_DFL);
-  arguments.insert(arguments.begin(), RAYGRAIN_PROGRAM);
+  arguments.insert(arguments.begin(), options.program.empty() ? RAYGRAIN_PROGRAM : options.program);
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  ::execv(RAYGRAIN_PROGRAM, pointers.data());
+  ::execv(pointers.front(), pointers.data());
   ::_exit(kCannotStart);
 }
 

@@ -15,6 +15,8 @@ struct RunOptions {
   std::optional<rlim_t> memory;      // bytes of address space
   std::string standard_output = {};  // a path, e.g. /dev/full; empty: captured
   bool closed_reader = false;        // standard output is a pipe that nobody reads
+  std::string folder = {};           // to run in; empty: that of the tests
+  std::string program = {};          // empty: raygrain
 };
 
 struct RunResult {

@@ -1,5 +1,6 @@
 // raygrain report: what it writes, and that it writes nothing where something is wrong.
 #include <filesystem>
+#include <set>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -109,10 +110,57 @@ TEST_F(ReportCommand, RefusesBadResultsAndWritesNothing) {
   expect_refusal({path("paper.csv"), "--markdown", path("no/report.md")}, kData, "its folder does not exist");
   expect_refusal({path("paper.csv"), "--out", out, "--template", path("paper.csv")}, kData, "is no report page");
   expect_refusal({path("paper.csv"), "--out", out, "--template", path("nothing.html")}, kData, "nothing.html");
+  expect_refusal({path("paper.csv"), "--out", out, "--views", path("nothing.html")}, kData, "there is no such page");
+  expect_refusal({path("paper.csv"), "--out", out, "--views", path("paper.csv")}, kData, "no page of raygrain view");
   expect_refusal({path("paper.csv")}, kUsage, "nothing to write");
   expect_refusal({"--out", out}, kUsage, "RESULTS is required");
   expect_refusal({path("paper.csv"), "--out", "-"}, kUsage, "--out: needs a file");
 }
+
+TEST_F(ReportCommand, LinksPagesOfTheViewer) {
+  write_file(path("viewer.html"), "<script>@RAYGRAIN_VIEW@</script><script>@RAYGRAIN_BLOBS@</script>");
+  const RunResult view = run_program({"view", "procedural:random100", "--recipes", "SAH+ALL", "--template",
+                                      path("viewer.html"), "--out", path("random view.html")});
+  ASSERT_EQ(view.exit_code, 0) << view.errors;
+  const RunResult report = run_program(
+      {"report", path("paper.csv"), "--views", path("random view.html"), "--out", path("report.html"), "--static"});
+  EXPECT_EQ(report.exit_code, 0) << report.errors;
+  EXPECT_NE(read_file(path("report.html")).find("<a href=\"random%20view.html\">"), std::string::npos);
+}
+
+#ifdef RAYGRAIN_CUSTOM_STUDY
+/// Labels or titles of the charts that hold a measured value of the recipe.
+std::set<std::string> charts_with(const nlohmann::json& report, const std::string& recipe) {
+  std::set<std::string> charts;
+  for (const auto& section : report["sections"])
+    for (const auto& chart : section["charts"])
+      for (const auto& panel : chart["panels"])
+        for (const auto& point : panel["measured"])
+          if ((point["series"] == recipe || point["group"] == recipe) && point["y"].is_number())
+            charts.insert(chart["label"] == "" ? chart["title"] : chart["label"]);
+  return charts;
+}
+
+/// From an example that knows the public headers alone to the charts of a page.
+TEST_F(ReportCommand, ChartsTheHeuristicsOfTheExample) {
+  RunOptions example;
+  example.folder = folder_.string();
+  example.program = RAYGRAIN_CUSTOM_STUDY;
+  const RunResult study = run_program({}, example);
+  ASSERT_EQ(study.exit_code, 0) << study.errors;
+  const RunResult result = run_program(
+      {"report", path("my-study"), "--out", path("report.html"), "--static", "--json", path("report.json")});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto report = nlohmann::json::parse(read_file(path("report.json")));
+  for (const char* recipe : {"MINE+SPFH", "MINE+ALL"}) {
+    const std::set<std::string> charts = charts_with(report, recipe);
+    for (const char* chart : {"Figure 16", "Figure 17", "Figure 18", "Figure 19", "Figure 20", "Figure 22",
+                              "All recipes against SAH+LSPH", "By kind of area and direction of rays"})
+      EXPECT_TRUE(charts.contains(chart)) << recipe << " is not in " << chart;
+    EXPECT_NE(read_file(path("report.html")).find(recipe), std::string::npos);
+  }
+}
+#endif
 
 TEST_F(ReportCommand, LeavesTheOldPageWhereTheDiskIsFull) {
   write_file(path("report.html"), "old");

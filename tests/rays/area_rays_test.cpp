@@ -256,5 +256,16 @@ TEST(AreaRays, RefuseOptionsOutOfRange) {
   EXPECT_EQ(code(flat), ErrorCode::kBadArea);
 }
 
+TEST(AngularDirection, TurnsByYawThenPitch) {
+  EXPECT_EQ(angular_direction(0, 0), (Vec3d{0, 0, 1}));
+  for (double yaw = -80; yaw <= 80; yaw += 20)
+    for (double pitch = -80; pitch <= 80; pitch += 20) {
+      const Vec3d d = angular_direction(yaw * kDegrees, pitch * kDegrees);
+      EXPECT_NEAR(length(d), 1, 1e-14);
+      EXPECT_NEAR(std::atan2(d.x, d.z), yaw * kDegrees, 1e-14);
+      EXPECT_NEAR(std::asin(d.y), -pitch * kDegrees, 1e-13);
+    }
+}
+
 }  // namespace
 }  // namespace raygrain

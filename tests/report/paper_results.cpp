@@ -31,7 +31,7 @@ std::vector<std::string> row(const std::string& scene, size_t group, const std::
           recipe,
           text(cost),
           text(cost / 2),
-          text(cost / 1.02),
+          text(cost / (group < 4 ? 1.02 : 1.12)),
           text(cost / 1.4),
           text(overlap),
           text(recipe.ends_with("SPFH") ? 2.1 : 1.5),

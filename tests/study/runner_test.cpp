@@ -156,6 +156,39 @@ TEST(StudyRunner, RefusesWhatIsNotItsOwn) {
             ErrorCode::kUnwritable);
 }
 
+/// Finished results are overwritten by the same study alone; by names of rows where nothing else is known of them.
+TEST(StudyRunner, KeepsFinishedResultsOfOthers) {
+  const test::TemporaryFolder folder;
+  std::atomic<int> runs{0};
+  const std::string out = folder.file("out"), results = out + "/results.csv";
+  run_study(counting_study(5, runs), {.folder = out});
+  const std::string finished = content(results), note = content(out + "/study.txt");
+  Study other_name = counting_study(5, runs), other_columns = counting_study(5, runs);
+  other_name.name = "another";
+  other_columns.columns[0].name = "cube";
+  runs = 0;
+  for (const Study& other : {counting_study(6, runs), counting_study(5, runs, "b"), other_name, other_columns}) {
+    const Error error = error_of([&] { return run_study(other, {.folder = out}); });
+    EXPECT_EQ(error.code, ErrorCode::kUsage);
+    EXPECT_EQ(error.where, results);
+    EXPECT_FALSE(error.hint.empty());
+    EXPECT_EQ(content(results), finished);
+    EXPECT_EQ(content(out + "/study.txt"), note);
+    EXPECT_FALSE(std::filesystem::exists(out + "/results.partial.csv"));
+  }
+  EXPECT_EQ(runs, 0);
+  run_study(counting_study(5, runs), {.folder = out});
+  EXPECT_EQ(runs, 5);
+
+  std::filesystem::remove(out + "/study.txt");
+  EXPECT_EQ(error_of([&] { return run_study(counting_study(6, runs), {.folder = out}); }).code, ErrorCode::kUsage);
+  run_study(counting_study(5, runs), {.folder = out});
+  std::filesystem::remove(out + "/study.txt");
+  write(results, "a table of mine\n1\n");
+  EXPECT_EQ(error_of([&] { return run_study(counting_study(5, runs), {.folder = out}); }).code, ErrorCode::kUsage);
+  EXPECT_EQ(content(results), "a table of mine\n1\n");
+}
+
 TEST(StudyRunner, RefusesASecondRunInTheSameFolder) {
   const test::TemporaryFolder folder;
   std::atomic<int> runs{0};
