@@ -13,6 +13,7 @@
 
 namespace CLI {
 class App;
+class Option;
 }
 
 namespace raygrain::cli {
@@ -28,6 +29,8 @@ class Arguments {
   void operand(const std::string& name, std::string& target, const std::string& help);
   /// One or more, the last operands of the command.
   void operands(const std::string& name, std::vector<std::string>& targets, const std::string& help);
+  /// None or more, the last operands of the command.
+  void optional_operands(const std::string& name, std::vector<std::string>& targets, const std::string& help);
   void text(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);
   /// The name of a file or folder. "-" is refused, so that none of that name is made.
   void file(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);
@@ -62,6 +65,8 @@ class Arguments {
   void action(std::function<void()> on_chosen);
 
  private:
+  CLI::Option* add_operands(const std::string& name, std::vector<std::string>& targets, const std::string& help);
+
   CLI::App* app_;
   std::string group_;
 };
