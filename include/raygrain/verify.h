@@ -106,7 +106,9 @@ struct VerifyOptions {
   unsigned threads = 0;       // 0 = all; with the same `rays` nothing depends on it but the time
   std::vector<Scene> scenes;  // taken in turns with random ones; their own rays are asked too
   uint64_t most_triangles = 2000;  // up to so many every ray goes to brute force; beyond, one in a thousand
-  uint32_t structures_per_scene = 5;
+  uint32_t structures_per_scene = 3;
+  /// Rays of a scene times its triangles, about: with more, less time goes into making scenes and structures.
+  uint64_t tests_per_scene = 4'000'000;
   std::vector<RayStructure> structures;  // asked about every scene, besides
   std::string folder;                    // where failures are saved; empty: nowhere
   size_t most_failures = 8;              // made small and kept; more are only counted

@@ -28,12 +28,12 @@ size_t random_size(Random& random) {
   return random.below(4) ? 500 + random.below(1500) : 3000 + random.below(9000);
 }
 
-/// So many that brute force and structures take about the same time.
-size_t rays_for(size_t triangles, bool is_brute_force, const std::string& name) {
-  if (!is_brute_force) return 12'000;
+/// So many that brute force takes about as long for every scene.
+size_t rays_for(uint64_t tests, size_t triangles, bool is_brute_force, const std::string& name) {
   // Nearly every triangle of these takes exact arithmetic.
-  const size_t work = name == "mixed_exponents" ? 60'000 : 1'500'000;
-  return std::clamp<size_t>(work / (triangles + 20), 500, 16'000);
+  if (name == "mixed_exponents") tests /= 25;
+  if (!is_brute_force) triangles = 300;
+  return static_cast<size_t>(std::clamp<uint64_t>(tests / (triangles + 50), 100, 50'000));
 }
 
 Vec3 unit_vector(Random& random) {
@@ -227,7 +227,7 @@ Round make_round(const VerifyOptions& options, uint64_t number) {
   add_covering_areas(round.scene, random);
   draw_structures(round, options, random);
 
-  const size_t count = rays_for(triangles, round.is_brute_force, round.scene.name);
+  const size_t count = rays_for(options.tests_per_scene, triangles, round.is_brute_force, round.scene.name);
   RayMaker maker(round, random.next(), round.is_brute_force);
   if (chosen.file != nullptr) add_own_rays(maker, *chosen.file, chosen.visit, 20'000);
   maker.add_mixed(count * 6 / 10);
