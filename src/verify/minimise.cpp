@@ -11,7 +11,7 @@
 namespace raygrain::verification {
 namespace {
 
-constexpr size_t kMostTries = 4000;
+constexpr size_t kMostWork = 400'000;  // triangles, rays or areas, summed over all tries
 
 TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<uint32_t>& triangles) {
   TriangleMesh part;
@@ -36,15 +36,15 @@ std::vector<uint32_t> numbers(size_t count) {
 }
 
 /// Leaves items out, in smaller and smaller pieces, as long as what is left still fails.
-std::vector<uint32_t> smallest(std::vector<uint32_t> items, size_t least, size_t& tries,
+std::vector<uint32_t> smallest(std::vector<uint32_t> items, size_t least, size_t& work,
                                const std::function<bool(const std::vector<uint32_t>&)>& fails) {
   for (size_t piece = std::max<size_t>(items.size() / 2, 1);; piece = std::max<size_t>(piece / 2, 1)) {
     bool was_cut = false;
-    for (size_t begin = 0; begin < items.size() && tries < kMostTries;) {
+    for (size_t begin = 0; begin < items.size() && work < kMostWork;) {
       const size_t end = std::min(items.size(), begin + piece);
       std::vector<uint32_t> rest(items.begin(), items.begin() + static_cast<ptrdiff_t>(begin));
       rest.insert(rest.end(), items.begin() + static_cast<ptrdiff_t>(end), items.end());
-      ++tries;
+      work += rest.size() + 20;
       if (rest.size() >= least && fails(rest)) {
         items = std::move(rest);
         was_cut = true;
@@ -52,7 +52,7 @@ std::vector<uint32_t> smallest(std::vector<uint32_t> items, size_t least, size_t
         begin = end;
       }
     }
-    if ((piece == 1 && !was_cut) || tries >= kMostTries) return items;
+    if ((piece == 1 && !was_cut) || work >= kMostWork) return items;
   }
 }
 
@@ -115,7 +115,7 @@ class Case {
     const auto place = [&](const std::vector<uint32_t>& chosen) {
       return static_cast<size_t>(std::ranges::lower_bound(chosen, target) - chosen.begin());
     };
-    others = smallest(others, 0, tries_, [&](const std::vector<uint32_t>& chosen) {
+    others = smallest(others, 0, work_, [&](const std::vector<uint32_t>& chosen) {
       return fails(scene_, with(chosen), place(chosen));
     });
     group_ = with(others);
@@ -129,7 +129,7 @@ class Case {
       scene.mesh = std::make_shared<const TriangleMesh>(part_of(*whole.mesh, triangles));
       return scene;
     };
-    scene_ = with(smallest(numbers(whole.mesh->triangle_count()), 1, tries_, [&](const std::vector<uint32_t>& triangles) {
+    scene_ = with(smallest(numbers(whole.mesh->triangle_count()), 1, work_, [&](const std::vector<uint32_t>& triangles) {
       return fails(with(triangles), group_, target_);
     }));
   }
@@ -142,7 +142,7 @@ class Case {
       for (const uint32_t i : areas) scene.areas.push_back(whole.areas[i]);
       return scene;
     };
-    scene_ = with(smallest(numbers(whole.areas.size()), 0, tries_,
+    scene_ = with(smallest(numbers(whole.areas.size()), 0, work_,
                            [&](const std::vector<uint32_t>& areas) { return fails(with(areas), group_, target_); }));
   }
 
@@ -151,7 +151,7 @@ class Case {
   VerifyScene scene_;
   RayGroup group_;
   size_t target_;
-  size_t tries_ = 0;
+  size_t work_ = 0;
 };
 
 }  // namespace

@@ -155,6 +155,7 @@ std::string to_text(const StructureSpec& spec) {
 StructureSpec parse_spec(const std::string& text) {
   std::istringstream words(text);
   StructureSpec spec;
+  spec.kind.clear();
   words >> spec.kind;
   for (std::string word; words >> word;) {
     const size_t equal = word.find('=');
