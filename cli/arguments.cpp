@@ -50,8 +50,7 @@ void Arguments::operands(const std::string& name, std::vector<std::string>& targ
   add_operands(name, targets, help)->required();
 }
 
-void Arguments::optional_operands(const std::string& name, std::vector<std::string>& targets,
-                                  const std::string& help) {
+void Arguments::optional_operands(const std::string& name, std::vector<std::string>& targets, const std::string& help) {
   add_operands(name, targets, help);
 }
 

@@ -43,12 +43,13 @@ VerifyOptions verify_options(const Options& options, Progress& progress) {
   result.folder = options.folder;
   for (const std::string& scene : options.scenes) result.scenes.push_back(open_scene(scene, progress));
   result.stop = was_interrupted;
-  result.progress = [&progress, rays = static_cast<double>(result.rays), seconds = result.seconds](const VerifyTally& t) {
+  result.progress = [&progress, rays = static_cast<double>(result.rays),
+                     seconds = result.seconds](const VerifyTally& t) {
     const double done = std::max(static_cast<double>(t.rays) / rays, t.seconds / seconds);
-    progress.show(fmt::format("{:.1f} million rays, {:.3f} million per second, {} differences",
-                              static_cast<double>(t.rays) / 1e6, static_cast<double>(t.rays) / t.seconds / 1e6,
-                              t.differences + t.leaks),
-                  done);
+    progress.show(
+        fmt::format("{:.1f} million rays, {:.3f} million per second, {} differences", static_cast<double>(t.rays) / 1e6,
+                    static_cast<double>(t.rays) / t.seconds / 1e6, t.differences + t.leaks),
+        done);
   };
   return result;
 }
@@ -105,7 +106,8 @@ Action declare_verify(Arguments& arguments) {
   arguments.optional_operands("SCENE", options->scenes,
                               "Scenes to take in turns with random ones; their own rays are asked first");
   arguments.optional_whole("--rays", options->rays, {1, UINT64_MAX}, "At least so many rays [10000000]");
-  arguments.real("--minutes", "M", options->minutes, {0, kMostMinutes}, "End after this time, with what was done so far");
+  arguments.real("--minutes", "M", options->minutes, {0, kMostMinutes},
+                 "End after this time, with what was done so far");
   arguments.whole("--seed", options->seed, {}, "Of scenes, rays and structures");
   arguments.file("--out", "DIR", options->folder, "Where scenes that show a wrong answer are saved [verify-failures]");
   add_common(arguments, options->common);

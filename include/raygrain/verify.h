@@ -76,12 +76,12 @@ RayStructure parse_structure(const std::string& name);
 struct VerifyTally {
   uint64_t scenes = 0, structures = 0;  // `structures` were made over all scenes
   uint64_t rays = 0, hits = 0;
-  uint64_t comparisons = 0;   // answers of structures: nearest hits and yes-or-no
-  uint64_t oracle_rays = 0;   // of the rays, those that brute force answered too
-  uint64_t differences = 0;   // answers with any bit wrong, and structures that could not be made
-  uint64_t inside_rays = 0;   // rays from inside closed meshes: each must hit
-  uint64_t lines = 0;         // lines that touch no edge of closed meshes: each must cross an even number of times
-  uint64_t leaks = 0;         // of the last two, those that did not
+  uint64_t comparisons = 0;  // answers of structures: nearest hits and yes-or-no
+  uint64_t oracle_rays = 0;  // of the rays, those that brute force answered too
+  uint64_t differences = 0;  // answers with any bit wrong, and structures that could not be made
+  uint64_t inside_rays = 0;  // rays from inside closed meshes: each must hit
+  uint64_t lines = 0;        // lines that touch no edge of closed meshes: each must cross an even number of times
+  uint64_t leaks = 0;        // of the last two, those that did not
   double seconds = 0;
 
   void add(const VerifyTally& other);
@@ -94,25 +94,25 @@ std::string to_text(const VerifyTally& tally);
 /// What differed, made small.
 struct VerifyFailure {
   std::string structure;
-  std::string what;   // for people
-  Scene scene;        // mesh, areas and one set of rays, one of which fails; its name is the structure's
-  std::string path;   // of the saved scene; empty where none was saved
+  std::string what;  // for people
+  Scene scene;       // mesh, areas and one set of rays, one of which fails; its name is the structure's
+  std::string path;  // of the saved scene; empty where none was saved
 };
 
 struct VerifyOptions {
-  uint64_t rays = 10'000'000;  // at least so many
+  uint64_t rays = 10'000'000;                                // at least so many
   double seconds = std::numeric_limits<double>::infinity();  // but no longer than about this
   uint64_t seed = 1;
-  unsigned threads = 0;       // 0 = all; with the same `rays` nothing depends on it but the time
-  std::vector<Scene> scenes;  // taken in turns with random ones; their own rays are asked too
+  unsigned threads = 0;            // 0 = all; with the same `rays` nothing depends on it but the time
+  std::vector<Scene> scenes;       // taken in turns with random ones; their own rays are asked too
   uint64_t most_triangles = 2000;  // up to so many every ray goes to brute force; beyond, one in a thousand
   uint32_t structures_per_scene = 3;
   /// Rays of a scene times its triangles, about: with more, less time goes into making scenes and structures.
   uint64_t tests_per_scene = 4'000'000;
-  std::vector<RayStructure> structures;  // asked about every scene, besides
-  std::string folder;                    // where failures are saved; empty: nowhere
-  size_t most_failures = 8;              // made small and kept; more are only counted
-  std::function<bool()> stop;            // asked now and then from any thread; true ends the run early
+  std::vector<RayStructure> structures;              // asked about every scene, besides
+  std::string folder;                                // where failures are saved; empty: nowhere
+  size_t most_failures = 8;                          // made small and kept; more are only counted
+  std::function<bool()> stop;                        // asked now and then from any thread; true ends the run early
   std::function<void(const VerifyTally&)> progress;  // sums so far, never by two threads at once
 };
 

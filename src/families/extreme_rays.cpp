@@ -114,7 +114,8 @@ Ray beside(Aim& aim) {
 
 /// Away from a hair above or below the surface, often only a hair long: what shadow and bounce rays do.
 Ray from_a_hair_above(Aim& aim) {
-  const Vec3d start = aim.target() + aim.direction() * (aim.size() * std::ldexp(1.0, -8 - static_cast<int>(aim.random.below(24))));
+  const Vec3d start =
+      aim.target() + aim.direction() * (aim.size() * std::ldexp(1.0, -8 - static_cast<int>(aim.random.below(24))));
   const Vec3 origin = clamped_to_float(start);
   Ray ray{origin, clamped_to_float(aim.random.below(2) ? aim.target() - to_double(origin) : aim.direction())};
   const double ends[] = {1, 1e-3, 1e-6, 1 - 1e-6};

@@ -48,7 +48,8 @@ NamedMesh closed_shape(uint64_t kind, size_t triangles, Random& random) {
 /// What is small is not moved far away: nothing of it would be left.
 NamedMesh placed(NamedMesh source, double scale, bool far) {
   const double shift = far ? 1e6 : 0;
-  const std::string name = source.name + (scale == 1 ? "" : "_scaled_1e" + std::to_string(std::lround(std::log10(scale)))) +
+  const std::string name = source.name +
+                           (scale == 1 ? "" : "_scaled_1e" + std::to_string(std::lround(std::log10(scale)))) +
                            (far ? "_moved_1e6" : "");
   return scale == 1 && !far ? source : moved(name, std::move(source), scale, {shift, -shift, shift});
 }

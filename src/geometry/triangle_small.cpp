@@ -15,8 +15,8 @@ constexpr int kMantissaBits = 24;
 constexpr int kLowestExponent = -149;  // of the least positive float
 
 // Coordinates are integers of up to W bits in a common unit, those of the direction of up to W_d bits in theirs.
-// Differences have W + 1 bits, a determinant of three of them is below 6 * 2^(3W + 3), the sum of three determinants with
-// the direction below 18 * 2^(W_d + 2W + 2): for W <= 40 and W_d + 2W <= 120 both are below 2^127.
+// Differences have W + 1 bits, a determinant of three of them is below 6 * 2^(3W + 3), the sum of three determinants
+// with the direction below 18 * 2^(W_d + 2W + 2): for W <= 40 and W_d + 2W <= 120 both are below 2^127.
 constexpr int kMostBits = 40, kMostBitsTogether = 120;
 
 struct Parts {

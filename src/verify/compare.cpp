@@ -17,8 +17,7 @@ struct Room {
   std::vector<float> until;
 
   /// Filled with what no structure would answer.
-  explicit Room(size_t rays)
-      : nearest(rays, Hit{-7, -7, -7, 7}), any(rays, 7), told(rays, 0), until(rays, kInf) {}
+  explicit Room(size_t rays) : nearest(rays, Hit{-7, -7, -7, 7}), any(rays, 7), told(rays, 0), until(rays, kInf) {}
   RayAnswers answers() { return {nearest, any, told, until}; }
 };
 

@@ -37,8 +37,7 @@ std::optional<FrameUnderTest> make_frame_tree(const StructureSpec& spec, const V
   const Bounds box = mesh_bounds(*scene.mesh);
   const Vec3 direction = to_float(geometry.ray_direction(geometry.region().corners[0]));
   const std::optional<RayFrame> frame =
-      spec.of_area ? area_frame(kind, geometry)
-                   : parallel_frame(kind, direction, is_empty(box) ? Vec3{} : center(box));
+      spec.of_area ? area_frame(kind, geometry) : parallel_frame(kind, direction, is_empty(box) ? Vec3{} : center(box));
   if (!frame) return {};
   std::vector<uint32_t> ids(scene.mesh->triangle_count());
   std::iota(ids.begin(), ids.end(), 0u);

@@ -35,7 +35,9 @@ AnswerRays make_wide(const StructureSpec& spec, const VerifyScene& scene) {
         [&](std::span<const Ray> rays, std::span<Hit> hits) { tree.intersect(rays, hits, spec.threads); });
     ask<uint8_t>(
         spec, group.rays, answers.any,
-        [&](const Ray& ray) { return spec.counted ? tree.occluded_counted(ray, counters, how) : tree.occluded(ray, how); },
+        [&](const Ray& ray) {
+          return spec.counted ? tree.occluded_counted(ray, counters, how) : tree.occluded(ray, how);
+        },
         [&](std::span<const Ray> rays, std::span<uint8_t> flags) { tree.occluded(rays, flags, spec.threads); });
     tell(answers, RayAnswers::kNearest | RayAnswers::kAny);
   };

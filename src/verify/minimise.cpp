@@ -115,9 +115,8 @@ class Case {
     const auto place = [&](const std::vector<uint32_t>& chosen) {
       return static_cast<size_t>(std::ranges::lower_bound(chosen, target) - chosen.begin());
     };
-    others = smallest(others, 0, work_, [&](const std::vector<uint32_t>& chosen) {
-      return fails(scene_, with(chosen), place(chosen));
-    });
+    others = smallest(others, 0, work_,
+                      [&](const std::vector<uint32_t>& chosen) { return fails(scene_, with(chosen), place(chosen)); });
     group_ = with(others);
     target_ = place(others);
   }
@@ -129,9 +128,9 @@ class Case {
       scene.mesh = std::make_shared<const TriangleMesh>(part_of(*whole.mesh, triangles));
       return scene;
     };
-    scene_ = with(smallest(numbers(whole.mesh->triangle_count()), 1, work_, [&](const std::vector<uint32_t>& triangles) {
-      return fails(with(triangles), group_, target_);
-    }));
+    scene_ =
+        with(smallest(numbers(whole.mesh->triangle_count()), 1, work_,
+                      [&](const std::vector<uint32_t>& triangles) { return fails(with(triangles), group_, target_); }));
   }
 
   void shrink_areas() {

@@ -11,8 +11,8 @@ Ray whole_line(Ray ray) {
   return ray;
 }
 
-/// Is the line met on the edge from a to b? Turned by corners, each weight is reported once as v, which is zero there (and
-/// where it underflows: then the line counts as touching, and is left out).
+/// Is the line met on the edge from a to b? Turned by corners, each weight is reported once as v, which is zero there
+/// (and where it underflows: then the line counts as touching, and is left out).
 bool touches(const Ray& line, const std::array<Vec3, 3>& t) {
   for (size_t k = 0; k < 3; ++k) {
     Hit hit;

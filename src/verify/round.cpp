@@ -153,8 +153,9 @@ void add_covering_areas(VerifyScene& scene, Random& random) {
   scene.areas.push_back(directional_light_area("sun", unit_vector(random), box));
   const Vec3d lo = to_double(box.lo), size = to_double(extent(box));
   const double around = random.below(2) ? 0 : 1;
-  const Vec3d eye = lo + Vec3d{size.x * random.uniform(-around, 1 + around), size.y * random.uniform(-around, 1 + around),
-                               size.z * random.uniform(-around, 1 + around)};
+  const Vec3d eye =
+      lo + Vec3d{size.x * random.uniform(-around, 1 + around), size.y * random.uniform(-around, 1 + around),
+                 size.z * random.uniform(-around, 1 + around)};
   const std::vector<InfluenceArea> lamp = point_light_areas("bulb", to_float(eye), box);
   const size_t count = random.below(2) ? 6 : 1;
   scene.areas.insert(scene.areas.end(), lamp.begin(), lamp.begin() + static_cast<ptrdiff_t>(count));
@@ -223,7 +224,8 @@ Round make_round(const VerifyOptions& options, uint64_t number) {
   }
   const size_t triangles = round.scene.mesh->triangle_count();
   round.is_brute_force = triangles <= options.most_triangles;
-  for (InfluenceArea& area : areas_around(*round.scene.mesh, random.next())) round.scene.areas.push_back(std::move(area));
+  for (InfluenceArea& area : areas_around(*round.scene.mesh, random.next()))
+    round.scene.areas.push_back(std::move(area));
   add_covering_areas(round.scene, random);
   draw_structures(round, options, random);
 

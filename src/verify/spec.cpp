@@ -112,9 +112,8 @@ void draw_accelerator(StructureSpec& spec, Random& random, const Registry& regis
 }
 
 void draw_frame(StructureSpec& spec, Random& random) {
-  spec.frame =
-      name(any_of(random, std::array{FrameKind::kRotation, FrameKind::kShearX, FrameKind::kShearY, FrameKind::kShearZ,
-                                     FrameKind::kProjective}));
+  spec.frame = name(any_of(random, std::array{FrameKind::kRotation, FrameKind::kShearX, FrameKind::kShearY,
+                                              FrameKind::kShearZ, FrameKind::kProjective}));
   spec.of_area = one_in(random, 2) || spec.frame == name(FrameKind::kProjective);
   spec.spatial = one_in(random, 2);
 }
@@ -178,16 +177,15 @@ Isa parse_isa(const std::string& text) {
 
 Registry verify_registry(uint64_t seed) {
   Registry registry = default_registry();
-  registry.measures.push_back({"RANDOM", "a number that a seed draws for each box", false, false,
-                               [seed](const HeuristicInput&) {
-                                 return RayMeasure([seed](const Bounds& box) {
-                                   uint64_t bits = seed;
-                                   for (const Vec3 p : {box.lo, box.hi})
-                                     for (int k = 0; k < 3; ++k)
-                                       bits = Random(bits ^ std::bit_cast<uint32_t>(p[k])).next();
-                                   return static_cast<float>(Random(bits).uniform());
-                                 });
-                               }});
+  registry.measures.push_back(
+      {"RANDOM", "a number that a seed draws for each box", false, false, [seed](const HeuristicInput&) {
+         return RayMeasure([seed](const Bounds& box) {
+           uint64_t bits = seed;
+           for (const Vec3 p : {box.lo, box.hi})
+             for (int k = 0; k < 3; ++k) bits = Random(bits ^ std::bit_cast<uint32_t>(p[k])).next();
+           return static_cast<float>(Random(bits).uniform());
+         });
+       }});
   return registry;
 }
 

@@ -16,7 +16,7 @@ namespace raygrain::verification {
 
 /// Fields that a kind does not read keep their default and are not in the name.
 struct StructureSpec {
-  std::string kind = "wide";  // binary, wide, frame, coverage, accelerator
+  std::string kind = "wide";                                      // binary, wide, frame, coverage, accelerator
   std::string tree = "SAH+ALL@binned", local = "PAH+ALL@binned";  // recipes
   bool for_wide = false, reinserted = false, refitted = false, from_file = false;
   uint32_t area = 0;  // which of the scene's, modulo their number

@@ -65,8 +65,11 @@ void check_reference(const Round& round, Finding& found) {
       const Hit right = oracle.nearest(round.groups[g].rays[i]);
       if (same_bits(right, round.expected[g][i])) continue;
       ++found.tally.differences;
-      found.failures.push_back({"binary", "nearest hit " + to_text(round.expected[g][i]) + " instead of " + to_text(right),
-                                {"binary", *round.scene.mesh, {}, {{"rays", std::vector<Ray>{round.groups[g].rays[i]}}}}, {}});
+      found.failures.push_back(
+          {"binary",
+           "nearest hit " + to_text(round.expected[g][i]) + " instead of " + to_text(right),
+           {"binary", *round.scene.mesh, {}, {{"rays", std::vector<Ray>{round.groups[g].rays[i]}}}},
+           {}});
     }
 }
 
@@ -103,7 +106,8 @@ Finding run_round(const VerifyOptions& options, uint64_t number) {
 
 std::string with_ray(const VerifyFailure& failure) {
   const auto& rays = std::get<std::vector<Ray>>(failure.scene.ray_sets.at(0).source);
-  return failure.what + (rays.size() == 1 ? ", ray " + to_text(rays[0]) : ", one of " + std::to_string(rays.size()) + " rays");
+  return failure.what +
+         (rays.size() == 1 ? ", ray " + to_text(rays[0]) : ", one of " + std::to_string(rays.size()) + " rays");
 }
 
 /// Keeps a round's failures, as many as are wanted, in files too.
@@ -146,8 +150,9 @@ std::string to_text(const VerifyTally& t) {
   std::snprintf(text, sizeof text,
                 "%s: %llu rays, %llu comparisons, %llu rays by brute force, %llu differences, %llu leaks "
                 "(%llu scenes, %llu structures, %.1f s, %.3f million rays/s)",
-                t.is_good() ? "verified" : "WRONG ANSWERS", number(t.rays), number(t.comparisons), number(t.oracle_rays),
-                number(t.differences), number(t.leaks), number(t.scenes), number(t.structures), t.seconds, speed);
+                t.is_good() ? "verified" : "WRONG ANSWERS", number(t.rays), number(t.comparisons),
+                number(t.oracle_rays), number(t.differences), number(t.leaks), number(t.scenes), number(t.structures),
+                t.seconds, speed);
   return text;
 }
 

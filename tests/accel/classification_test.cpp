@@ -10,8 +10,8 @@
 
 #include "raygrain/accelerator.h"
 #include "raygrain/error.h"
-
 #include "raygrain/families.h"
+
 #include "base/parallel.h"
 #include "support/mesh_families.h"
 

@@ -11,10 +11,10 @@
 #include <gtest/gtest.h>
 
 #include "raygrain/accelerator.h"
+#include "raygrain/families.h"
 #include "raygrain/rays.h"
 #include "raygrain/refine.h"
 
-#include "raygrain/families.h"
 #include "base/parallel.h"
 #include "support/mesh_families.h"
 

@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 
 #include "raygrain/error.h"
-
 #include "raygrain/families.h"
+
 #include "base/parallel.h"
 #include "base/random.h"
 #include "support/mesh_families.h"

@@ -117,8 +117,8 @@ TEST(Verify, FindsAWrongHitMakesItSmallAndSavesIt) {
 }
 
 TEST(Verify, FindsTheLastBit) {
-  const VerifyResult result = verify(
-      about(spoiled("last bit", [](const TriangleMesh&, const RayGroup&, size_t i, const RayAnswers& answers) {
+  const VerifyResult result =
+      verify(about(spoiled("last bit", [](const TriangleMesh&, const RayGroup&, size_t i, const RayAnswers& answers) {
         Hit& hit = answers.nearest[i];
         if (is_hit(hit) && hit.triangle == 0 && hit.v > 0.5f) hit.v = std::nextafter(hit.v, 2.0f);
       })));
@@ -151,8 +151,8 @@ TEST(Verify, KeepsTheRaysThatADefectNeeds) {
 }
 
 TEST(Verify, CountsLeaksFromInside) {
-  const VerifyResult result =
-      verify(about(spoiled("leaky", [](const TriangleMesh&, const RayGroup& group, size_t i, const RayAnswers& answers) {
+  const VerifyResult result = verify(
+      about(spoiled("leaky", [](const TriangleMesh&, const RayGroup& group, size_t i, const RayAnswers& answers) {
         if (group.must_hit && i % 2 == 0) answers.nearest[i] = {}, answers.any[i] = 0;
       })));
   EXPECT_GT(result.tally.leaks, 0u);
@@ -218,7 +218,8 @@ TEST(RandomStructures, AreMadeAgainFromTheirNames) {
     const std::string name = random_structure(seed).name;
     EXPECT_EQ(parse_structure(name).name, name);
   }
-  for (const char* wrong : {"", "wood", "wide leaf", "wide leaf=x", "wide leaf=-1", "wide colour=1", "wide reinserted=2"})
+  for (const char* wrong :
+       {"", "wood", "wide leaf", "wide leaf=x", "wide leaf=-1", "wide colour=1", "wide reinserted=2"})
     EXPECT_THROW(parse_structure(wrong), Error) << wrong;
 }
 
@@ -230,14 +231,45 @@ TEST(RandomStructures, AreOfEveryKind) {
     std::istringstream in(name);
     for (std::string word; in >> word;) words.insert(word);
   }
-  std::vector<std::string> expected{"binary",     "wide",          "frame",        "coverage",      "accelerator",
-                                    "paper",      "binned",        "sweep",        "spatial",       "subset",
-                                    "reinserted=1", "refitted=1",  "from_file=1",  "leaf=1",        "leaf=7",
-                                    "batch=1",    "batch=17",      "batch=5000",   "threads=3",     "threads=0",
-                                    "areas=0",    "octree=0",      "ray_space=1",  "covered=0",     "traversal=binary",
-                                    "counted=1",  "unpruned=1",    "sorts=1",      "frame=rotation", "frame=shear_x",
-                                    "frame=projective", "of_area=1", "spatial=0",  "for_wide=1",    "tree=RANDOM+ALL",
-                                    "tree=PAH+SPFH", "local=VISIBLE+ROBIN", "local=DIR+LSPH", "tree=SAMPLED+ALL"};
+  std::vector<std::string> expected{"binary",
+                                    "wide",
+                                    "frame",
+                                    "coverage",
+                                    "accelerator",
+                                    "paper",
+                                    "binned",
+                                    "sweep",
+                                    "spatial",
+                                    "subset",
+                                    "reinserted=1",
+                                    "refitted=1",
+                                    "from_file=1",
+                                    "leaf=1",
+                                    "leaf=7",
+                                    "batch=1",
+                                    "batch=17",
+                                    "batch=5000",
+                                    "threads=3",
+                                    "threads=0",
+                                    "areas=0",
+                                    "octree=0",
+                                    "ray_space=1",
+                                    "covered=0",
+                                    "traversal=binary",
+                                    "counted=1",
+                                    "unpruned=1",
+                                    "sorts=1",
+                                    "frame=rotation",
+                                    "frame=shear_x",
+                                    "frame=projective",
+                                    "of_area=1",
+                                    "spatial=0",
+                                    "for_wide=1",
+                                    "tree=RANDOM+ALL",
+                                    "tree=PAH+SPFH",
+                                    "local=VISIBLE+ROBIN",
+                                    "local=DIR+LSPH",
+                                    "tree=SAMPLED+ALL"};
   for (const Isa isa : supported_isas())
     if (isa != Isa::kScalar) expected.push_back(std::string("isa=") + name(isa));
   for (const std::string& word : expected) EXPECT_EQ(words.count(word), 1u) << word;
