@@ -39,8 +39,8 @@ std::vector<InfluenceArea> areas_around(const TriangleMesh& mesh, uint64_t seed)
 /// with finite [tmin, tmax], a few invalid (NaN, zero direction).
 std::vector<Ray> aimed_rays(const TriangleMesh& mesh, size_t count, uint64_t seed);
 
-/// A mix of what is rarer: from far away, of tiny and of huge directions, past silhouettes, along edges, a float's step
-/// beside edges and vertices, from a hair above surfaces.
+/// A mix of what is rarer: from far away, of tiny and of huge directions, past silhouettes, along edges, nearly along
+/// axes, a float's step beside edges and vertices, from a hair above surfaces.
 std::vector<Ray> extreme_rays(const TriangleMesh& mesh, size_t count, uint64_t seed);
 
 /// The same rays with intervals that begin or end exactly at what they hit, or one float before or behind it; rays that

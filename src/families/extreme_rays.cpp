@@ -132,6 +132,21 @@ Ray round_numbers(Aim& aim) {
   return ray;
 }
 
+/// Along an axis through a vertex or edge, but for a component that is smaller than the others by up to 2^90: exponents
+/// that no fixed-size integer holds together.
+Ray nearly_along_axis(Aim& aim) {
+  const Vec3d target = aim.random.below(2) ? aim.vertex() : aim.edge_point(), place = aim.place();
+  const int axis = static_cast<int>(aim.random.below(3));
+  Vec3d origin = target;
+  origin[axis] = place[axis];
+  if (aim.random.below(3) == 0) origin[(axis + 1) % 3] = place[(axis + 1) % 3];
+  Ray ray{clamped_to_float(origin), clamped_to_float(target - origin)};
+  const double size = std::abs(static_cast<double>(ray.direction[axis]));
+  const double small = aim.signed_uniform() * std::ldexp(size, -static_cast<int>(aim.random.below(90)));
+  ray.direction[(axis + 2) % 3] = clamped_to_float({small, 0, 0}).x;
+  return ray;
+}
+
 Ray extreme_ray(Aim& aim, const Edges& edges, size_t kind) {
   switch (kind) {
     case 0:
@@ -147,6 +162,8 @@ Ray extreme_ray(Aim& aim, const Edges& edges, size_t kind) {
       return beside(aim);
     case 6:
       return from_a_hair_above(aim);
+    case 7:
+      return nearly_along_axis(aim);
     default:
       return round_numbers(aim);
   }
@@ -159,7 +176,7 @@ std::vector<Ray> extreme_rays(const TriangleMesh& mesh, size_t count, uint64_t s
   const Edges edges(mesh);
   std::vector<Ray> rays;
   rays.reserve(count);
-  while (rays.size() < count) rays.push_back(extreme_ray(aim, edges, rays.size() % 8));
+  while (rays.size() < count) rays.push_back(extreme_ray(aim, edges, rays.size() % 9));
   return rays;
 }
 

@@ -16,8 +16,9 @@ constexpr int kLowestExponent = -149;  // of the least positive float
 
 // Coordinates are integers of up to W bits in a common unit, those of the direction of up to W_d bits in theirs.
 // Differences have W + 1 bits, a determinant of three of them is below 6 * 2^(3W + 3), the sum of three determinants
-// with the direction below 18 * 2^(W_d + 2W + 2): for W <= 40 and W_d + 2W <= 120 both are below 2^127.
-constexpr int kMostBits = 40, kMostBitsTogether = 120;
+// with the direction below 18 * 2^(W_d + 2W + 2): for W <= 40 and W_d + 2W <= 120 both are below 2^127. W_d <= 62, so
+// that the direction's integers have 64 bits.
+constexpr int kMostBits = 40, kMostBitsOfDirection = 62, kMostBitsTogether = 120;
 
 struct Parts {
   int64_t mantissa;
@@ -109,7 +110,9 @@ std::optional<bool> intersect_triangle_small(const Ray& ray, Vec3 a, Vec3 b, Vec
   Scale place, way;
   for (const Vec3 p : {ray.origin, a, b, c}) place.add(p.x), place.add(p.y), place.add(p.z);
   way.add(ray.direction.x), way.add(ray.direction.y), way.add(ray.direction.z);
-  if (place.bits() > kMostBits || way.bits() + 2 * place.bits() > kMostBitsTogether) return {};
+  if (place.bits() > kMostBits || way.bits() > kMostBitsOfDirection ||
+      way.bits() + 2 * place.bits() > kMostBitsTogether)
+    return {};
   const Vector d{way.in_units(ray.direction.x), way.in_units(ray.direction.y), way.in_units(ray.direction.z)};
   const Vector oa = difference(place, a, ray.origin), ob = difference(place, b, ray.origin),
                oc = difference(place, c, ray.origin);

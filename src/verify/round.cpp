@@ -162,6 +162,8 @@ void add_covering_areas(VerifyScene& scene, Random& random) {
 }
 
 void draw_structures(Round& round, const VerifyOptions& options, Random& random) {
+  if (options.structures_per_scene > 0)
+    round.structures.push_back("exact seed=" + std::to_string(random.below(100'000)));
   for (uint32_t i = 0; i < options.structures_per_scene; ++i)
     round.structures.push_back(random_structure(random.next()).name);
 }

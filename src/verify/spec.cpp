@@ -197,12 +197,13 @@ namespace {
 
 RayStructure structure_of(const verification::StructureSpec& spec) {
   using namespace verification;
-  constexpr std::array<std::pair<const char*, AnswerRays (*)(const StructureSpec&, const VerifyScene&)>, 5> kKinds{
+  constexpr std::array<std::pair<const char*, AnswerRays (*)(const StructureSpec&, const VerifyScene&)>, 6> kKinds{
       {{"binary", make_binary},
        {"wide", make_wide},
        {"frame", make_frame},
        {"coverage", make_coverage},
-       {"accelerator", make_accelerator}}};
+       {"accelerator", make_accelerator},
+       {"exact", make_exact}}};
   for (const auto& [kind, make] : kKinds)
     if (spec.kind == kind)
       return {to_text(spec), [spec, make = make](const VerifyScene& scene) {
@@ -210,7 +211,7 @@ RayStructure structure_of(const verification::StructureSpec& spec) {
                 return std::ranges::count(isas, parse_isa(spec.isa)) ? make(spec, scene) : AnswerRays{};
               }};
   throw Error(ErrorCode::kUsage, "structure", "unknown kind \"" + spec.kind + "\"",
-              "Known: binary, wide, frame, coverage, accelerator");
+              "Known: binary, wide, frame, coverage, accelerator, exact");
 }
 
 }  // namespace

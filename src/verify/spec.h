@@ -53,6 +53,10 @@ AnswerRays make_frame(const StructureSpec& spec, const VerifyScene& scene);
 AnswerRays make_coverage(const StructureSpec& spec, const VerifyScene& scene);
 AnswerRays make_accelerator(const StructureSpec& spec, const VerifyScene& scene);
 
+/// No structure: the definition of a hit in integers of any size (intersect_triangle_exact), for one ray in 128 of a
+/// group.
+AnswerRays make_exact(const StructureSpec& spec, const VerifyScene& scene);
+
 /// The binary tree that a spec asks for.
 Bvh make_tree(const StructureSpec& spec, const VerifyScene& scene);
 
