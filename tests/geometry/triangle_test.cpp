@@ -231,32 +231,6 @@ TEST(Triangle, FastEqualsExactAtTheLimitOfPrecision) {
   EXPECT_GT(hits, rounds / 20);
 }
 
-// Directions and places whose numbers have few bits, but exponents of their own: whatever fits into 128 bits, and does
-// not fit by a little.
-TEST(Triangle, FastEqualsExactWhereExponentsDiffer) {
-  Random random(6);
-  size_t hits = 0;
-  const auto number = [&](uint64_t bits, uint64_t exponents) {
-    const auto mantissa = static_cast<float>(static_cast<int>(random.below(2 << bits)) - (1 << bits));
-    return std::ldexp(mantissa, -static_cast<int>(random.below(exponents + 1)));
-  };
-  const uint64_t rounds = test::seed_count(200000);
-  for (uint64_t i = 0; i < rounds; ++i) {
-    const uint64_t bits = 1 + random.below(12), spread = random.below(40), ray_spread = random.below(100);
-    const auto point = [&](uint64_t exponents) {
-      const float x = number(bits, exponents), y = number(bits, exponents);
-      return Vec3{x, y, number(bits, exponents)};
-    };
-    const Vec3 a = point(spread), b = point(spread), c = point(spread), origin = point(spread);
-    Ray ray{origin, point(ray_spread), -kInf};
-    if (random.below(2)) ray.direction = a - origin;
-    if (random.below(4) == 0) ray.direction[static_cast<int>(random.below(3))] = number(bits, ray_spread);
-    if (!is_valid(ray)) continue;
-    ASSERT_NO_FATAL_FAILURE(expect_same({ray, a, b, c}, hits)) << i;
-  }
-  EXPECT_GT(hits, rounds / 50);
-}
-
 // What the definition promises about other ways to say the same thing, bit for bit.
 void expect_identities(const Pair& p) {
   for (const Intersector intersect : kIntersectors) {

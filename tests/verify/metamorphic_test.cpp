@@ -274,11 +274,9 @@ TEST(Metamorphic, ExactMovesChangeNothing) {
   size_t compared = 0;
   for_scenes(2, 120, [&](const TriangleMesh& mesh, const std::vector<Ray>& all_rays, uint64_t seed) {
     for (const Vec3 offset : {Vec3{1024, -2048, 512}, Vec3{-0x1p17f, 0, 0x1p16f}}) {
-      const auto is_exact = [&](Vec3 p) { return (p + offset) - offset == p && (-offset + (p + offset)) == p; };
-      // Sums are exact where subtracting gives both terms back.
       const auto is_sum_exact = [&](Vec3 p) {
         const Vec3d sum = to_double(p) + to_double(offset);
-        return is_exact(p) && to_double(to_float(sum)) == sum;
+        return to_double(to_float(sum)) == sum && sum - to_double(offset) == to_double(p);
       };
       if (!std::ranges::all_of(mesh.vertices, is_sum_exact)) continue;
       TriangleMesh moved = mesh;
