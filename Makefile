@@ -6,7 +6,7 @@ ASAN := build/asan
 PRESET = cmake --preset $(1) --log-level=WARNING
 CTEST = ctest --output-on-failure -j $(JOBS)
 # The tests that run under the sanitizers on every change: everything below the program.
-CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_accel test_rays test_io test_analyze
+CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_accel test_rays test_io test_analyze test_verify
 
 BENCH ?= --quick
 

@@ -59,14 +59,25 @@ void Arguments::operand(const std::string& name, std::string& target, const std:
   files_->inputs.emplace_back([&target, name] { return std::vector<NamedFile>{{name, target}}; });
 }
 
-void Arguments::operands(const std::string& name, std::vector<std::string>& targets, const std::string& help) {
+CLI::Option* Arguments::add_operands(const std::string& name, std::vector<std::string>& targets,
+                                     const std::string& help) {
   const auto take = [&targets, name](const std::vector<std::string>& values) {
     for (const std::string& value : values)
       if (value.empty()) fail_usage(name, "is empty", "Give its name, or see --help");
     targets = values;
   };
-  describe(app_->add_option_function<std::vector<std::string>>(name, take, help)->required(), "", group_);
+  CLI::Option* option = app_->add_option_function<std::vector<std::string>>(name, take, help);
+  describe(option, "", group_);
   files_->inputs.emplace_back([&targets, name] { return named(name, targets); });
+  return option;
+}
+
+void Arguments::operands(const std::string& name, std::vector<std::string>& targets, const std::string& help) {
+  add_operands(name, targets, help)->required();
+}
+
+void Arguments::optional_operands(const std::string& name, std::vector<std::string>& targets, const std::string& help) {
+  add_operands(name, targets, help);
 }
 
 void Arguments::text(const std::string& flags, const std::string& value_name, std::string& target,

@@ -16,7 +16,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace raygrain::cli {
 
@@ -32,6 +33,8 @@ class Arguments {
   void operand(const std::string& name, std::string& target, const std::string& help);
   /// One or more, the last operands of the command.
   void operands(const std::string& name, std::vector<std::string>& targets, const std::string& help);
+  /// None or more, the last operands of the command.
+  void optional_operands(const std::string& name, std::vector<std::string>& targets, const std::string& help);
   void text(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);
   /// The name of a file or folder to read. "-" is refused, here and below, so that none of that name is made.
   void file(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);
@@ -79,6 +82,7 @@ class Arguments {
   struct Files;  // what the command reads and writes
 
   void add_file(const std::string& flags, const std::string& value_name, std::string& target, const std::string& help);
+  CLI::Option* add_operands(const std::string& name, std::vector<std::string>& targets, const std::string& help);
 
   CLI::App* app_;
   std::shared_ptr<Files> files_;

@@ -16,6 +16,7 @@ Action declare_info(Arguments& arguments);
 Action declare_recipes(Arguments& arguments);
 Action declare_report(Arguments& arguments);
 Action declare_study(Arguments& arguments);
+Action declare_verify(Arguments& arguments);
 Action declare_view(Arguments& arguments);
 
 inline constexpr int kSuccess = 0, kBadData = 1, kBadUsage = 2;

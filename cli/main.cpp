@@ -39,6 +39,7 @@ constexpr Command kCommands[] = {
     {"refit", "Fit a tree file to vertices that moved", declare_refit},
     {"report", "Draw the results of studies as a page of charts", declare_report},
     {"view", "Show scene, areas, trees, rays and costs in a browser", declare_view},
+    {"verify", "Compare every structure's answers with brute force on random scenes, bit by bit", declare_verify},
     {"recipes", "List the measures, orientations and builders that recipes are made of", declare_recipes},
 };
 constexpr Command kSceneCommands[] = {

@@ -17,7 +17,7 @@ namespace {
 
 // A handler can be told things through such a variable only.
 volatile std::sig_atomic_t progress_line_shown = 0;
-std::atomic<bool> is_drawing = false, is_ending = false;
+std::atomic<bool> is_drawing = false, is_ending = false, is_interrupted = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "else no handler may use them");
 
 /// Either the drawing thread sees that the end has come, or it is waited for here; not for ever, should the terminal
@@ -36,6 +36,10 @@ extern "C" void stop_at_once(int signal) {
     static_cast<void>(ignored);
   }
   ::_exit(128 + signal);
+}
+
+extern "C" void stop_at_second(int signal) {
+  if (is_interrupted.exchange(true)) stop_at_once(signal);
 }
 
 void handle(int signal, void (*handler)(int)) {
@@ -58,6 +62,15 @@ void install_signal_handlers() {
     if (!is_ignored(signal)) handle(signal, stop_at_once);
   handle(SIGPIPE, SIG_IGN);
   handle(SIGXFSZ, SIG_IGN);
+}
+
+void finish_on_interrupt() {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP})
+    if (!is_ignored(signal)) handle(signal, stop_at_second);
+}
+
+bool was_interrupted() {
+  return is_interrupted;
 }
 
 void set_progress_line_shown(bool shown) {

@@ -10,6 +10,11 @@ namespace raygrain::cli {
 /// that goes (SIGPIPE) and a file size limit (SIGXFSZ) become errors of the writes themselves.
 void install_signal_handlers();
 
+/// From now on a first SIGINT, SIGTERM or SIGHUP only makes was_interrupted() true: for work whose result so far is
+/// worth having. A second one ends the program as above.
+void finish_on_interrupt();
+bool was_interrupted();
+
 /// Tells the handlers whether a progress line stands on standard error.
 void set_progress_line_shown(bool shown);
 

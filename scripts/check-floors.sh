@@ -6,7 +6,7 @@ cd "${1:-$(dirname "$0")/..}"
 { find src cli -name '*.h' -o -name '*.cpp'; find include -name '*.h'; } 2>/dev/null | sort | xargs awk '
   BEGIN {
     # module -> floor
-    split("base 1 geometry 2 build 3 rays 3 io 4 heuristic 4 trace 4 accel 5 analyze 6 study 7 report 7 cli 8", m, " ")
+    split("base 1 geometry 2 build 3 rays 3 io 4 heuristic 4 trace 4 families 4 accel 5 analyze 6 verify 6 study 7 report 7 cli 8", m, " ")
     for (i = 1; i in m; i += 2) floor[m[i]] = m[i + 1]
     # module: its public headers
     own("base", "error")
@@ -16,8 +16,10 @@ cd "${1:-$(dirname "$0")/..}"
     own("io", "scene io")
     own("heuristic", "heuristics registry")
     own("trace", "trace wide frame_tree coverage")
+    own("families", "families")
     own("accel", "top_level accelerator")
     own("analyze", "fields analyze")
+    own("verify", "verify")
     own("study", "compare study")
     own("report", "report chart study_report view")
     own("cli", "raygrain")

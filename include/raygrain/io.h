@@ -42,7 +42,8 @@ void save_mesh(const TriangleMesh& mesh, const std::string& path);
 /// SCENE of the command line: a mesh file, a scene.json, or "procedural:...".
 Scene load_scene(const std::string& scene, const LoadOptions& options = {});
 
-/// Writes scene.json beside a binary PLY of its mesh (NAME.json and NAME.ply).
+/// Writes scene.json beside a binary PLY of its mesh (NAME.json and NAME.ply). Lists of rays that JSON cannot hold
+/// (NaN, infinity) go to NAME-rays-N.csv.
 void save_scene(const Scene& scene, const std::string& path);
 
 /// A JSON file with "areas" alone (the --areas option), or a whole scene.json's areas.

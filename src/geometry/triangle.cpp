@@ -11,6 +11,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/triangle_small.h"
+
 namespace raygrain {
 namespace {
 
@@ -133,8 +135,9 @@ bool intersect_triangle(const Ray& ray, Vec3 a, Vec3 b, Vec3 c, Hit& hit) {
                             {dot(edges.to_a, normal), kDeterminantError * distance * size * size}};
   Verdict answer = verdict(estimates, ray, hit);
   if (answer == Verdict::kUnsure) answer = careful_verdict(edges, estimates, ray, hit);
-  if (answer == Verdict::kUnsure) return intersect_triangle_exact(ray, a, b, c, hit);
-  return answer == Verdict::kHit;
+  if (answer != Verdict::kUnsure) return answer == Verdict::kHit;
+  const std::optional<bool> small = intersect_triangle_small(ray, a, b, c, hit);
+  return small ? *small : intersect_triangle_exact(ray, a, b, c, hit);
 }
 
 }  // namespace raygrain

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <ostream>
 
@@ -30,6 +31,26 @@ Scene load_mesh_alone(const std::string& path, const LoadOptions& options) {
   return scene;
 }
 
+/// Can JSON say it? It knows neither NaN nor infinity; a missing tmax stands for one.
+bool is_plain(const Ray& ray) {
+  return is_finite(ray.origin) && is_finite(ray.direction) && std::isfinite(ray.tmin) &&
+         (std::isfinite(ray.tmax) || ray.tmax == kInf);
+}
+
+/// Lists of rays that JSON cannot hold go to CSV files beside the mesh; their names, by ray set.
+std::vector<std::string> save_odd_rays(const Scene& scene, const std::filesystem::path& mesh_path) {
+  std::vector<std::string> files(scene.ray_sets.size());
+  for (size_t i = 0; i < files.size(); ++i) {
+    const auto* rays = std::get_if<std::vector<Ray>>(&scene.ray_sets[i].source);
+    if (rays == nullptr || std::ranges::all_of(*rays, is_plain)) continue;
+    std::filesystem::path path = mesh_path;
+    path.replace_filename(mesh_path.stem().string() + "-rays-" + std::to_string(i) + ".csv");
+    save_rays(*rays, path.string());
+    files[i] = path.filename().string();
+  }
+  return files;
+}
+
 }  // namespace
 
 Scene load_scene(const std::string& scene, const LoadOptions& options) {
@@ -43,7 +64,7 @@ void save_scene(const Scene& scene, const std::string& path) {
                 "Give a name that ends in .json");
   const std::filesystem::path mesh_path = std::filesystem::path(path).replace_extension(".ply");
   save_mesh(scene.mesh, mesh_path.string());
-  const std::string text = scene_json(scene, mesh_path.filename().string());
+  const std::string text = scene_json(scene, mesh_path.filename().string(), save_odd_rays(scene, mesh_path));
   write_file_atomically(path, [&](std::ostream& out) { out << text; });
 }
 

@@ -33,8 +33,9 @@ TriangleMesh read_meshes(const JsonReader& meshes, const LoadOptions& options, L
 /// A whole scene.json.
 Scene read_scene(const std::string& path, const LoadOptions& options);
 
-/// The text of a scene.json for a mesh in a file beside it.
-std::string scene_json(const Scene& scene, const std::string& mesh_file);
+/// The text of a scene.json for a mesh in a file beside it. `ray_files` names a file beside it for each ray set whose
+/// rays are there; it is empty for the others.
+std::string scene_json(const Scene& scene, const std::string& mesh_file, const std::vector<std::string>& ray_files);
 
 /// The file name without folder and ending: a scene's name where it has none.
 std::string file_stem(const std::string& path);

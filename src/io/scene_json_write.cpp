@@ -129,18 +129,21 @@ void add_source(ObjectText& object, const std::vector<Ray>& rays, const RaySet&,
   object.add("rays", list_text(rays, "      ", ray_text));
 }
 
-std::string ray_set_text(const RaySet& set, const Scene& scene) {
+std::string ray_set_text(const RaySet& set, const Scene& scene, const std::string& file) {
   ObjectText object;
   object.add("name", json_text(set.name));
+  if (!file.empty()) return object.add("file", json_text(file)).text();
   std::visit([&](const auto& source) { add_source(object, source, set, scene); }, set.source);
   return object.text();
 }
 
 }  // namespace
 
-std::string scene_json(const Scene& scene, const std::string& mesh_file) {
+std::string scene_json(const Scene& scene, const std::string& mesh_file, const std::vector<std::string>& ray_files) {
   const std::string head = "{\n  \"format\": \"raygrain-scene\",\n  \"version\": 1,\n";
-  const auto write_set = [&](const RaySet& set) { return ray_set_text(set, scene); };
+  const auto write_set = [&](const RaySet& set) {
+    return ray_set_text(set, scene, ray_files.at(static_cast<size_t>(&set - scene.ray_sets.data())));
+  };
   return head + "  \"name\": " + json_text(scene.name) + ",\n  \"meshes\": [{\"file\": " + json_text(mesh_file) +
          "}],\n  \"areas\": " + list_text(scene.areas, "    ", area_text) +
          ",\n  \"rays\": " + list_text(scene.ray_sets, "    ", write_set) + "\n}\n";

@@ -91,11 +91,26 @@ struct FrameQuery {
   float inverse_x, inverse_y;          // z = side * inverse + offset
   float near_x, far_x, near_y, far_y;  // offsets
 
+  double origin_z, speed_z;          // local z of the point at t: origin_z + t speed_z
+  double origin_error, speed_error;  // of these two
+  bool is_projective;
+
   /// At or beyond (before, where t falls with z) the returned depth no hit matters, given one between depths lo and hi.
   float bound_after(float lo, float hi) const {
     const float z = column.ascending ? hi : lo, size = z < 0 ? -z : z;
     const float tie = tie_constant + size * tie_linear + z * z * tie_square + size * 0x1p-22f;
     return column.ascending ? z + tie : z - tie;
+  }
+  /// The same, given a hit's t. What its leaf knows of its depth says nothing: a leaf that holds another part of the
+  /// triangle may have found it.
+  float bound_at(float t) const {
+    const double along = static_cast<double>(t), slack = origin_error + (along < 0 ? -along : along) * speed_error;
+    double z = origin_z + along * speed_z + (column.ascending ? slack : -slack);
+    if (is_projective) {
+      if (!(z > 0)) return column.ascending ? kInf : -kInf;
+      z = -1 / z;
+    }
+    return bound_after(static_cast<float>(z), static_cast<float>(z));
   }
 };
 

@@ -165,6 +165,11 @@ FrameUse prepare(const FrameMemory& tree, const Ray& ray, FrameQuery& query) {
   constexpr double kLongest = 0x1p126;
   if (!(steepness <= kSteepest && (std::abs(q.z) + tree.farthest) * std::abs(inverse) <= kLongest))
     return FrameUse::kUnfit;
+  query.origin_z = q.z;
+  query.speed_z = m.z;
+  query.origin_error = 0x1p-49 * origin_size;
+  query.speed_error = 0x1p-49 * direction_size;
+  query.is_projective = frame.is_projective();
   FrameLine line;
   if (frame.is_projective()) {
     if (!(origin_size <= kFarthest * frame.near_z)) return FrameUse::kUnfit;

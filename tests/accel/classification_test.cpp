@@ -10,8 +10,8 @@
 
 #include "raygrain/accelerator.h"
 #include "raygrain/error.h"
+#include "raygrain/families.h"
 
-#include "accel/area_families.h"
 #include "base/parallel.h"
 #include "support/mesh_families.h"
 
@@ -42,8 +42,8 @@ TEST(Classification, EveryStructureEqualsBruteForce) {
   const auto families = test::mesh_families(31);
   for (size_t f = 0; f < families.size(); ++f) {
     const TriangleMesh& mesh = families[f].mesh;
-    const auto areas = test::areas_around(mesh, f + 3);
-    std::vector<Ray> rays = test::rays_of_areas(mesh, areas, rays_per_family(), f);
+    const auto areas = areas_around(mesh, f + 3);
+    std::vector<Ray> rays = rays_of_areas(mesh, areas, rays_per_family(), f);
     for (const Ray& ray : test::aimed_rays(mesh, rays_per_family() / 4, f)) rays.push_back(ray);
     std::vector<Hit> expected(rays.size());
     parallel_for(rays.size(), 64, 0, [&](size_t begin, size_t end) {

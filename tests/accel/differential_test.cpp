@@ -11,10 +11,10 @@
 #include <gtest/gtest.h>
 
 #include "raygrain/accelerator.h"
+#include "raygrain/families.h"
 #include "raygrain/rays.h"
 #include "raygrain/refine.h"
 
-#include "accel/area_families.h"
 #include "base/parallel.h"
 #include "support/mesh_families.h"
 
@@ -186,10 +186,10 @@ std::vector<Hit> brute_force(const TriangleMesh& mesh, const std::vector<Ray>& r
 }
 
 Tally compare_all(const NamedMesh& family, size_t count, uint64_t seed) {
-  const std::vector<InfluenceArea> areas = test::areas_around(family.mesh, seed);
+  const std::vector<InfluenceArea> areas = areas_around(family.mesh, seed);
   std::vector<Ray> rays = test::aimed_rays(family.mesh, count / 2, seed);
-  for (const Ray& ray : test::rays_of_areas(family.mesh, areas, count - rays.size(), seed)) rays.push_back(ray);
-  test::keep_distinct(rays);
+  for (const Ray& ray : rays_of_areas(family.mesh, areas, count - rays.size(), seed)) rays.push_back(ray);
+  keep_distinct(rays);
   const std::vector<Hit> expected = brute_force(family.mesh, rays);
   const std::vector<Combination> combinations = all_combinations(family.mesh, areas);
   std::vector<Tally> tallies(combinations.size());
@@ -206,9 +206,9 @@ Tally compare_all(const NamedMesh& family, size_t count, uint64_t seed) {
 
 /// Rays from inside a closed mesh towards its vertices, edges and faces: each must hit.
 size_t leaks(const NamedMesh& family, size_t count, uint64_t seed) {
-  const Accelerator scene(family.mesh, test::areas_around(family.mesh, seed));
+  const Accelerator scene(family.mesh, areas_around(family.mesh, seed));
   size_t missed = 0;
-  for (const Ray& ray : test::rays_from(family.inside, family.mesh, count, seed))
+  for (const Ray& ray : rays_from(family.inside, family.mesh, count, seed))
     missed += is_hit(scene.intersect(ray)) && scene.occluded(ray) ? 0 : 1;
   return missed;
 }

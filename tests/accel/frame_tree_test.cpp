@@ -13,8 +13,8 @@
 #include <gtest/gtest.h>
 
 #include "raygrain/error.h"
+#include "raygrain/families.h"
 
-#include "accel/area_families.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "support/mesh_families.h"
@@ -105,7 +105,7 @@ std::vector<Ray> rays_along(const TriangleMesh& mesh, Vec3 direction, size_t cou
   Random random(seed);
   const Bounds box = mesh_bounds(mesh);
   const double size = is_empty(box) ? 1 : length(to_double(box.hi) - to_double(box.lo));
-  std::vector<Ray> rays = test::rays_from({}, mesh, count, seed);  // for their targets
+  std::vector<Ray> rays = rays_from({}, mesh, count, seed);  // for their targets
   const Vec3d unit = normalized(to_double(direction));
   for (Ray& ray : rays) {
     const Vec3d target = to_double(ray.direction);
@@ -188,9 +188,9 @@ TEST(FrameTree, RaysOfAreasEqualBruteForce) {
     const auto mesh = std::make_shared<const TriangleMesh>(families[f].mesh);
     const auto corners = std::make_shared<const TriangleCorners>(*mesh);
     const std::vector<uint32_t> ids = all_triangles(*mesh);
-    for (const InfluenceArea& area : test::areas_around(*mesh, f + 5)) {
+    for (const InfluenceArea& area : areas_around(*mesh, f + 5)) {
       const AreaGeometry geometry(area);
-      std::vector<Ray> rays = test::rays_of_areas(*mesh, {area}, per_family / 7, f);
+      std::vector<Ray> rays = rays_of_areas(*mesh, {area}, per_family / 7, f);
       std::erase_if(rays, [&](const Ray& ray) { return !(ray.tmin >= 0 && contains(geometry.region(), ray.origin)); });
       for (const FrameKind kind : frame_kinds(geometry)) {
         const auto trees = on_every_isa(*area_frame(kind, geometry), corners, ids, f % 2 == 0);

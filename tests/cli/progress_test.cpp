@@ -81,6 +81,18 @@ TEST_F(ProgressLine, ShowsAStepOfCompareThatBeganEarly) {
   EXPECT_TRUE(terminal_.read().ends_with(kErase)) << "leftovers: " << terminal_.read();
 }
 
+TEST_F(ProgressLine, AnInterruptedVerificationEndsWithItsVerdict) {
+  RunningProgram program = start({"verify", "--minutes", "60", "--threads", "1", "--out", folder_.file("failures")});
+  EXPECT_TRUE(terminal_.wait_for("million rays", program)) << terminal_.read();
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait(), 0);
+  EXPECT_TRUE(terminal_.read().ends_with(kErase)) << "leftovers: " << terminal_.read();
+  const std::string output = read_file(folder_.file("out"));
+  EXPECT_TRUE(output.starts_with("verified: ")) << output;
+  EXPECT_NE(output.find(" 0 differences, 0 leaks"), std::string::npos) << output;
+  EXPECT_TRUE(names_in(folder_.file("failures")).empty());
+}
+
 // Takes seconds.
 const std::vector<std::string> kCompare{
     "compare", "procedural:city?size=30", "--recipes", "SAH+LSPH", "--rays", "5000", "--threads", "1"};

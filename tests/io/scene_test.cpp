@@ -89,6 +89,24 @@ TEST(Scene, SavedAndLoadedIsTheSameBitForBit) {
   }
 }
 
+// JSON knows neither NaN nor infinity.
+TEST(Scene, RaysThatJsonCannotHoldSurviveToo) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const test::TemporaryFolder folder;
+  Scene before = generate_scene({"random100", 0, 1});
+  before.ray_sets = {{"plain", std::vector<Ray>{{{1, 2, 3}, {0, 1, 0}}}},
+                     {"odd", std::vector<Ray>{{{1, 2, 3}, {0, 1, 0}, -kInf, 1},
+                                              {{kInf, 2, 3}, {0, -kInf, 0}},
+                                              {{1, 2, 3}, {0, 1, 0}, 0, -kInf},
+                                              {{nan, 2, 3}, {0, 1, nan}, nan, nan}}}};
+  save_scene(before, folder.file("odd.json"));
+  const Scene after = load_scene(folder.file("odd.json"));
+  ASSERT_EQ(after.ray_sets.size(), 2u);
+  for (size_t i = 0; i < 2; ++i) expect_same(before.ray_sets[i], after.ray_sets[i], before.mesh);
+  EXPECT_TRUE(std::filesystem::exists(folder.file("odd-rays-1.csv")));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("odd-rays-0.csv")));
+}
+
 TEST(Scene, ProceduralScenesSurviveTheirFiles) {
   for (const char* kind : {"city", "forest", "terrain", "random1000"}) {
     SCOPED_TRACE(kind);

@@ -118,7 +118,7 @@ class FramePending {
     if (size_ == kCapacity) decide();
     fetch_corners(tree_, id);
     entries_[size_++] = {id, first, last};
-    if (sure) lower(first, last);
+    if (sure) lower(query_.bound_after(first, last));
   }
   /// Decides all of them.
   void decide() {
@@ -129,7 +129,7 @@ class FramePending {
       Hit hit;
       if (!confirm(tree_, next.id, ray_, hit) || !is_nearer(hit, best_)) continue;
       best_ = hit;
-      lower(next.first, next.last);
+      lower(query_.bound_at(hit.t));
     }
   }
   HWY_INLINE bool is_beyond(float first, float last) const { return kAscending ? first > bound_ : last < bound_; }
@@ -142,9 +142,8 @@ class FramePending {
   };
   static constexpr size_t kCapacity = 16;
 
-  HWY_INLINE void lower(float first, float last) {
+  HWY_INLINE void lower(float bound) {
     if (!kPruning) return;
-    const float bound = query_.bound_after(first, last);
     bound_ = kAscending ? std::min(bound_, bound) : std::max(bound_, bound);
   }
 

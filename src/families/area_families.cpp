@@ -1,15 +1,14 @@
-#include "accel/area_families.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <string>
 
+#include "raygrain/families.h"
 #include "raygrain/rays.h"
 
 #include "base/random.h"
 
-namespace raygrain::test {
+namespace raygrain {
 namespace {
 
 constexpr double kGreatest = 3e38;
@@ -178,4 +177,4 @@ void keep_distinct(std::vector<Ray>& rays) {
   rays.erase(std::unique(rays.begin(), rays.end(), equal), rays.end());
 }
 
-}  // namespace raygrain::test
+}  // namespace raygrain

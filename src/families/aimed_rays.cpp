@@ -1,78 +1,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
-#include "base/random.h"
-#include "support/mesh_families.h"
+#include "families/aim.h"
+#include "families/shapes.h"
 
-namespace raygrain::test {
+namespace raygrain {
+
+using shapes::clamped_to_float;
+
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-constexpr double kFloatMax = std::numeric_limits<float>::max();
-
-double clamped(double x) {
-  return std::clamp(x, -kFloatMax, kFloatMax);
-}
-
-Vec3 clamped_to_float(Vec3d p) {
-  return to_float({clamped(p.x), clamped(p.y), clamped(p.z)});
-}
-
-// Draws points and directions that suit one mesh; everything in double, rounded to float at the end.
-class Aim {
- public:
-  Aim(const TriangleMesh& mesh, uint64_t seed) : mesh_(mesh), random(seed) {
-    const Bounds bounds = mesh_bounds(mesh);
-    if (is_empty(bounds)) return;
-    middle_ = (to_double(bounds.lo) + to_double(bounds.hi)) * 0.5;
-    half_ = (to_double(bounds.hi) - to_double(bounds.lo)) * 0.5;
-    const double size = std::max({half_.x, half_.y, half_.z});
-    if (size > 0) unit_ = std::ldexp(1.0, std::ilogb(size) - 10);
-    half_ = half_ + Vec3d{size, size, size} * 0.5;
-  }
-
-  // Anywhere in or around the mesh, half of the points with few bits so that differences to vertices are exact.
-  Vec3d place() {
-    const Vec3d p = middle_ + Vec3d{signed_uniform() * half_.x, signed_uniform() * half_.y, signed_uniform() * half_.z};
-    if (random.below(2)) return to_double(clamped_to_float(p));
-    const auto snap = [&](double x) { return std::round(x / unit_) * unit_; };
-    return to_double(clamped_to_float({snap(p.x), snap(p.y), snap(p.z)}));
-  }
-  Vec3d direction() {
-    const double x = signed_uniform(), y = signed_uniform();
-    return {x, y, signed_uniform() + 1e-3};
-  }
-  std::array<Vec3d, 3> triangle() {
-    if (mesh_.triangles.empty()) return {place(), place(), place()};
-    const size_t i = random.below(mesh_.triangle_count());
-    return {to_double(mesh_.vertex(i, 0)), to_double(mesh_.vertex(i, 1)), to_double(mesh_.vertex(i, 2))};
-  }
-  Vec3d vertex() { return triangle()[random.below(3)]; }
-  // The middle of an edge (often exact), or anywhere on it.
-  Vec3d edge_point() {
-    const auto [a, b, c] = triangle();
-    return a + (b - a) * (random.below(2) ? 0.5 : random.uniform());
-  }
-  Vec3d surface_point() {
-    const auto [a, b, c] = triangle();
-    const double s = random.uniform(), t = random.uniform() * (1 - s);
-    return a + (b - a) * s + (c - a) * t;
-  }
-  Ray towards(Vec3d target) {
-    const Vec3 origin = clamped_to_float(place());
-    return {origin, clamped_to_float(target - to_double(origin))};
-  }
-  double signed_uniform() { return random.uniform(-1, 1); }
-
- private:
-  const TriangleMesh& mesh_;
-  Vec3d middle_, half_{1, 1, 1};
-  double unit_ = 0x1p-10;
-
- public:
-  Random random;
-};
 
 Ray from_vertex(Aim& aim) {
   const Vec3d origin = aim.vertex();
@@ -209,4 +149,4 @@ std::vector<Ray> aimed_rays(const TriangleMesh& mesh, size_t count, uint64_t see
   return rays;
 }
 
-}  // namespace raygrain::test
+}  // namespace raygrain

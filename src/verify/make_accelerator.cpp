@@ -1,0 +1,81 @@
+// Whole accelerators under verification: single rays, arrays, and batches that share a direction or a point.
+#include <memory>
+
+#include "raygrain/accelerator.h"
+
+#include "verify/ask.h"
+
+namespace raygrain::verification {
+namespace {
+
+/// DIR is about plane areas only.
+std::vector<InfluenceArea> fitting_areas(const StructureSpec& spec, const VerifyScene& scene, const Recipe& local) {
+  std::vector<InfluenceArea> areas;
+  if (!spec.areas) return areas;
+  for (const InfluenceArea& area : scene.areas)
+    if (local.measure != "DIR" || std::holds_alternative<PlaneArea>(area.shape)) areas.push_back(area);
+  return areas;
+}
+
+AcceleratorOptions options_of(const StructureSpec& spec) {
+  AcceleratorOptions options;
+  options.registry = verify_registry(spec.seed);
+  options.local = parse_recipe(spec.local, options.registry);
+  options.global = parse_recipe(spec.tree, options.registry);
+  options.reinsert = spec.reinserted;
+  options.traversal = spec.traversal == "binary" ? Traversal::kBinary : Traversal::kWide;
+  options.space = spec.ray_space ? LocalSpace::kRay : LocalSpace::kWorld;
+  options.isa = parse_isa(spec.isa);
+  options.coverage = std::nullopt;
+  if (spec.covered) options.coverage = CoverageOptions{spec.cells, spec.tile, {}, spec.sorts};
+  options.top_level = {spec.octree ? TopLevelKind::kOctree : TopLevelKind::kList, 4};
+  options.samples = samples_of;
+  options.threads = spec.threads;
+  return options;
+}
+
+void answer_rays(const StructureSpec& spec, const Accelerator& scene, const RayGroup& group,
+                 const RayAnswers& answers) {
+  AcceleratorCounters counters;
+  AcceleratorCounters* counted = spec.counted ? &counters : nullptr;
+  ask<Hit>(
+      spec, group.rays, answers.nearest, [&](const Ray& ray) { return scene.intersect(ray, counted); },
+      [&](std::span<const Ray> rays, std::span<Hit> hits) { scene.intersect(rays, hits, spec.threads, counted); });
+  ask<uint8_t>(
+      spec, group.rays, answers.any, [&](const Ray& ray) { return scene.occluded(ray, counted); },
+      [&](std::span<const Ray> rays, std::span<uint8_t> flags) { scene.occluded(rays, flags, spec.threads, counted); });
+  tell(answers, RayAnswers::kNearest | RayAnswers::kAny);
+}
+
+/// The calls for rays that share something, in pieces of the batch's size.
+void answer_shared(const StructureSpec& spec, const Accelerator& scene, const RayGroup& group,
+                   const RayAnswers& answers) {
+  std::vector<Vec3> parts;  // origins, or directions
+  for (const Ray& ray : group.rays) parts.push_back(group.kind == RayGroupKind::kFrom ? ray.direction : ray.origin);
+  for (size_t begin = 0; begin < parts.size(); begin += spec.batch) {
+    const size_t count = std::min<size_t>(spec.batch, parts.size() - begin);
+    const std::span<const Vec3> some = std::span<const Vec3>(parts).subspan(begin, count);
+    const auto hits = answers.nearest.subspan(begin, count);
+    const auto flags = answers.any.subspan(begin, count);
+    if (group.kind == RayGroupKind::kFrom) scene.intersect_from(group.shared, some, hits, spec.threads);
+    if (group.kind == RayGroupKind::kTowards) scene.occluded_towards(some, group.shared, flags, spec.threads);
+    if (group.kind != RayGroupKind::kDirection) continue;
+    scene.intersect(some, group.shared, hits, spec.threads);
+    scene.occluded(some, group.shared, flags, spec.threads);
+  }
+  if (group.kind != RayGroupKind::kTowards) tell(answers, RayAnswers::kNearest);
+  if (group.kind != RayGroupKind::kFrom) tell(answers, RayAnswers::kAny);
+}
+
+}  // namespace
+
+AnswerRays make_accelerator(const StructureSpec& spec, const VerifyScene& scene) {
+  const AcceleratorOptions options = options_of(spec);
+  const Accelerator accelerator(*scene.mesh, fitting_areas(spec, scene, options.local), options);
+  return [spec, accelerator](const RayGroup& group, const RayAnswers& answers) {
+    if (group.kind == RayGroupKind::kMixed || spec.batch == 0) return answer_rays(spec, accelerator, group, answers);
+    answer_shared(spec, accelerator, group, answers);
+  };
+}
+
+}  // namespace raygrain::verification

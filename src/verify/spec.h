@@ -1,0 +1,67 @@
+// Structures as plain data: drawn at random, written as their names, read again from them.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "raygrain/registry.h"
+#include "raygrain/verify.h"
+#include "raygrain/wide.h"
+
+#include "base/random.h"
+
+namespace raygrain::verification {
+
+/// Fields that a kind does not read keep their default and are not in the name.
+struct StructureSpec {
+  std::string kind = "wide";                                      // binary, wide, frame, coverage, accelerator
+  std::string tree = "SAH+ALL@binned", local = "PAH+ALL@binned";  // recipes
+  bool for_wide = false, reinserted = false, refitted = false, from_file = false;
+  uint32_t area = 0;  // which of the scene's, modulo their number
+  uint32_t leaf = 8;  // triangles, of wide trees
+  std::string isa = "scalar";
+  std::string frame = "shear_y";
+  bool of_area = false, spatial = true;  // frame: of the area, or of its direction alone
+  bool areas = true, octree = true, ray_space = false, covered = true;
+  std::string traversal = "wide";
+  float cells = 0.25f;  // of coverages
+  uint32_t tile = 256;
+  bool sorts = false;
+  uint32_t batch = 0;  // rays per call; 0: one ray at a time
+  uint32_t threads = 1;
+  bool counted = false, unpruned = false;
+  uint64_t seed = 1;
+};
+
+StructureSpec random_spec(Random& random);
+std::string to_text(const StructureSpec& spec);
+/// Throws Error (kUsage).
+StructureSpec parse_spec(const std::string& text);
+
+/// Throws Error (kUsage) for an unknown name.
+Isa parse_isa(const std::string& name);
+
+/// The library's own, and "RANDOM": a measure that is not monotone and knows no reason, for trees of any shape.
+Registry verify_registry(uint64_t seed);
+
+/// Of each kind; see RayStructure::make.
+AnswerRays make_binary(const StructureSpec& spec, const VerifyScene& scene);
+AnswerRays make_wide(const StructureSpec& spec, const VerifyScene& scene);
+AnswerRays make_frame(const StructureSpec& spec, const VerifyScene& scene);
+AnswerRays make_coverage(const StructureSpec& spec, const VerifyScene& scene);
+AnswerRays make_accelerator(const StructureSpec& spec, const VerifyScene& scene);
+
+/// No structure: the definition of a hit in integers of any size (intersect_triangle_exact), for one ray in 128 of a
+/// group.
+AnswerRays make_exact(const StructureSpec& spec, const VerifyScene& scene);
+
+/// The binary tree that a spec asks for.
+Bvh make_tree(const StructureSpec& spec, const VerifyScene& scene);
+
+/// Null for a scene without areas.
+const InfluenceArea* area_of(const StructureSpec& spec, const VerifyScene& scene);
+std::vector<Ray> samples_of(const InfluenceArea* area);
+
+}  // namespace raygrain::verification
