@@ -12,6 +12,7 @@
 
 #include "cli/areas.h"
 #include "cli/commands.h"
+#include "cli/memory.h"
 #include "cli/open_scene.h"
 #include "cli/output_folder.h"
 #include "cli/pictures.h"
@@ -97,6 +98,11 @@ int compare_scene(const Options& options) {
   std::vector<InfluenceArea> areas = choose_areas(options.areas, scene, output);
   if (areas.empty()) fail_without_areas(options.areas, scene, options.scene);
   scene.areas = std::move(areas);
+  constexpr double kBytesPerRay = sizeof(Ray) + 2 * sizeof(Hit);
+  require_memory("comparing",
+                 bytes_of_comparison(scene.mesh, scene.areas, work.recipes.empty() ? paper_recipes() : work.recipes) +
+                     static_cast<double>(options.rays) * kBytesPerRay,
+                 "Take a smaller scene, fewer recipes or fewer rays");
   std::optional<OutputFolder> folder;
   if (!options.folder.empty()) folder.emplace(options.folder);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -52,6 +53,7 @@ void become_nobody() {
   limit(RLIMIT_FSIZE, options.file_size);
   limit(RLIMIT_AS, options.memory);
   if (options.unprivileged) become_nobody();
+  if (!options.memory_left.empty()) ::setenv("RAYGRAIN_MEMORY", options.memory_left.c_str(), 1);
   ::signal(SIGINT, SIG_DFL);
   arguments.insert(arguments.begin(), options.program.empty() ? RAYGRAIN_PROGRAM : options.program);
   std::vector<char*> pointers;

@@ -19,6 +19,7 @@ struct RunOptions {
   std::string folder = {};           // to run in; empty: that of the tests
   std::string program = {};          // empty: raygrain
   bool unprivileged = false;         // as another user where this one is root
+  std::string memory_left = {};      // MiB that the program shall believe in
 };
 
 struct RunResult {
