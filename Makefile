@@ -11,7 +11,7 @@ CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_
 BENCH ?= --quick
 
 .PHONY: help build demo study bench bench-dependencies report-page report-page-test viewer viewer-test page-dependencies gallery \
-        test test-full asan-test release-test pages-for-tests pages-if-possible tsan-test clang-test neon-test fuzz coverage format check-format tidy \
+        test test-full asan-test release-test pages-for-tests pages-if-possible tsan-test clang-test neon-test fuzz models coverage format check-format tidy \
         dependencies full-dependencies install clean
 
 help:            ## this list
@@ -148,6 +148,10 @@ coverage:        ## line coverage of src/, as text and HTML in build/coverage
 	@mkdir -p build/coverage/html
 	@gcovr --root . --filter 'src/' --object-directory build/coverage --html-details build/coverage/html/index.html \
 	   --print-summary --txt build/coverage/coverage.txt
+
+models: build full-dependencies ## load every model of Debian's assimp-testmodels; the outcome is docs/models.md
+	@scripts/check-models.sh $(RELEASE)/bin/raygrain > build/models.md
+	@cp build/models.md docs/models.md
 
 format:          ## clang-format on every source
 	@scripts/sources.sh | xargs clang-format -i

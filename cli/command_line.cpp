@@ -106,7 +106,7 @@ Error unexpected_word(const CLI::App& app, const std::string& word) {
   const std::string_view near = nearest_name(option ? word.substr(0, word.find('=')) : word, names);
   const std::string hint = near.empty() ? "" : "Did you mean " + std::string(near) + "? ";
   const char* what = option ? "is no option here" : (words.empty() ? "is one operand too many" : "is no command");
-  return Error(ErrorCode::kUsage, word, what, hint + "See " + full_name(app) + " --help");
+  return Error(ErrorCode::kUsage, word.empty() ? "''" : word, what, hint + "See " + full_name(app) + " --help");
 }
 
 Error usage_error(const CLI::App& program, const CLI::ParseError& error) {

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Loads every file of a folder of models (Debian's assimp-testmodels) with the program, under limits of time and memory:
-# each is loaded or refused with an error. Writes a table for docs/models.md to standard output; fails where a file
+# each is loaded or refused with an error. Writes the page docs/models.md to standard output; fails where a file
 # crashes the program, hangs it, or is refused without a word.
-# Use: scripts/check-models.sh PROGRAM [FOLDER [SECONDS [MEMORY_KIB|unlimited]]]; exits with 77 where there are no models.
+# `make models` writes docs/models.md with it. Use: scripts/check-models.sh PROGRAM [FOLDER [SECONDS [MEMORY_KIB|unlimited]]]; exits with 77 where there are no models.
 set -euo pipefail
 export LC_ALL=C
 program=$(realpath "$1") folder=${2:-/usr/share/assimp/models} seconds=${3:-20} memory=${4:-4194304}
@@ -30,6 +30,13 @@ check() {  # FILE -> "ENDING<tab>OUTCOME<tab>FILE<tab>MESSAGE"
 }
 
 find . -type f | sed 's|^\./||' | sort | while IFS= read -r file; do check "$file"; done >"$work/rows"
+cat <<END
+# Models of other people
+
+Every file of Debian's package \`assimp-testmodels\`, loaded with \`raygrain scene info\` under limits of $seconds seconds and
+$((memory / 1024)) MiB: working models, broken ones and hostile ones. Made by \`make models\`.
+
+END
 awk -F'\t' '
   $2 == "other" { others++; next }
   { endings[$1]; count[$1, $2]++; total[$2]++ }

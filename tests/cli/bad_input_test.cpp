@@ -150,6 +150,8 @@ std::vector<BadInput> bad_areas_and_rays() {
 std::vector<BadInput> bad_usage() {
   return {
       {"no command", {}, kUsage, "command"},
+      {"empty command", {""}, kUsage, "'': is no command"},
+      {"empty command before others", {"", "--raycompare", "SCENE"}, kUsage, "'': is no command"},
       {"unknown command", {"compair", "SCENE"}, kUsage, "Did you mean compare"},
       {"unknown scene command", {"scene", "inform", "SCENE"}, kUsage, "Did you mean info"},
       {"unknown option", compare_with({"--recipe", "SAH+ALL"}), kUsage, "Did you mean --recipes"},
