@@ -93,6 +93,7 @@ void command_line(Bytes bytes) {
   fill(folder);
   const Inside inside(folder);
   std::vector<char*> pointers;
+  pointers.reserve(words.size() + 1);
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
   accepts([&] {

@@ -30,11 +30,8 @@ std::vector<Bounds> read_boxes(Reader& reader) {
     }
     boxes.push_back(same && i > 0 ? boxes.front() : box);
   }
-  if (kind >= 250 && !boxes.empty())
-    while (boxes.size() < kMany) {
-      const Bounds& box = boxes[boxes.size() % count];
-      boxes.push_back(box);
-    }
+  if (kind >= 250 && count > 0)
+    while (boxes.size() < kMany) boxes.push_back(Bounds(boxes[boxes.size() - count]));
   return boxes;
 }
 

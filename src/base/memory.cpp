@@ -64,10 +64,10 @@ uint64_t left_in_groups() {
     if (at == std::string::npos) continue;
     std::string path = line.substr(second ? 3 : at + 8);
     for (;;) {
-      least = std::min(least, second ? left_in_group("/sys/fs/cgroup" + path, "memory.max", "memory.current",
-                                                     "inactive_file")
-                                     : left_in_group("/sys/fs/cgroup/memory" + path, "memory.limit_in_bytes",
-                                                     "memory.usage_in_bytes", "total_inactive_file"));
+      least = std::min(least,
+                       second ? left_in_group("/sys/fs/cgroup" + path, "memory.max", "memory.current", "inactive_file")
+                              : left_in_group("/sys/fs/cgroup/memory" + path, "memory.limit_in_bytes",
+                                              "memory.usage_in_bytes", "total_inactive_file"));
       if (path.size() <= 1) break;
       path.resize(path.rfind('/') == std::string::npos ? 0 : path.rfind('/'));
     }

@@ -258,10 +258,12 @@ std::vector<BadInput> bad_outputs() {
       limited({"too many rays", {"compare", kSmallScene, "--rays", "1000000000"}, kData, "59.6 GiB"}, believed_memory),
       limited({"too large to trace", {"trace", kMiddleScene, "--set", "sun", "-o", "OUT"}, kData, "--quality fast"},
               believed_memory),
-      limited({"too large to build", {"build", kMiddleScene, "--recipe", "SAH+ALL", "-o", "OUT"}, kData, "GiB are left"},
-              believed_memory),
-      limited({"too large to view", {"view", kMiddleScene, "--template", "SCENE", "--out", "OUT"}, kData, "GiB are left"},
-              believed_memory),
+      limited(
+          {"too large to build", {"build", kMiddleScene, "--recipe", "SAH+ALL", "-o", "OUT"}, kData, "GiB are left"},
+          believed_memory),
+      limited(
+          {"too large to view", {"view", kMiddleScene, "--template", "SCENE", "--out", "OUT"}, kData, "GiB are left"},
+          believed_memory),
       {"nested folder where none can be", with({"--out", "SCENE/a/b/c"}), kData, "SCENE/a/b/c"},
   };
 }

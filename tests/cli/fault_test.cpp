@@ -31,7 +31,8 @@ std::vector<Row> writing_commands() {
       {"scene", {"scene", "generate", kSmallScene, "-o", "OUT/scene.json"}},
       {"comparison", {"compare", kSmallScene, "--rays", "100", "--recipes", "SAH+ALL@binned", "--out", "OUT/compared"}},
       {"report", {"report", "IN/compare.csv", "--static", "--out", "OUT/page.html", "--markdown", "OUT/page.md"}},
-      {"view", {"view", kSmallScene, "--recipes", "SAH+ALL@binned", "--template", "IN/page.html", "--out", "OUT/v.html"}},
+      {"view",
+       {"view", kSmallScene, "--recipes", "SAH+ALL@binned", "--template", "IN/page.html", "--out", "OUT/v.html"}},
       {"study", {"study", "published", "--only", "Random100", "--rays", "50", "--out", "OUT/study", "--quiet"}},
   };
 }
