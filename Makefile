@@ -11,7 +11,7 @@ CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_
 BENCH ?= --quick
 
 .PHONY: help build demo study bench bench-dependencies report-page report-page-test viewer viewer-test page-dependencies gallery \
-        test test-full asan-test release-test pages-for-tests pages-if-possible tsan-test clang-test neon-test coverage format check-format tidy \
+        test test-full asan-test release-test pages-for-tests pages-if-possible tsan-test clang-test neon-test fuzz models coverage format check-format tidy \
         dependencies full-dependencies install clean
 
 help:            ## this list
@@ -133,6 +133,14 @@ clang-test:
 neon-test:       ## the searches and their tests for 64-bit Arm, in an emulator
 	@JOBS=$(JOBS) scripts/neon-test.sh build/neon
 
+# A finding is a file in build/fuzz/findings: run build/fuzz/bin/fuzz_NAME on it, mend, add a row to a table test.
+MINUTES ?= 5
+
+fuzz: full-dependencies ## every fuzzer for MINUTES (default 5), JOBS at a time; a table, and an error where there is a finding
+	@$(call PRESET,fuzz)
+	@cmake --build build/fuzz -j $(JOBS)
+	@scripts/fuzz.sh build/fuzz $(MINUTES) $(JOBS) $(FUZZERS)
+
 coverage:        ## line coverage of src/, as text and HTML in build/coverage
 	@$(call PRESET,coverage)
 	@cmake --build build/coverage -j $(JOBS)
@@ -140,6 +148,10 @@ coverage:        ## line coverage of src/, as text and HTML in build/coverage
 	@mkdir -p build/coverage/html
 	@gcovr --root . --filter 'src/' --object-directory build/coverage --html-details build/coverage/html/index.html \
 	   --print-summary --txt build/coverage/coverage.txt
+
+models: build full-dependencies ## load every model of Debian's assimp-testmodels; the outcome is docs/models.md
+	@scripts/check-models.sh $(RELEASE)/bin/raygrain > build/models.md
+	@cp build/models.md docs/models.md
 
 format:          ## clang-format on every source
 	@scripts/sources.sh | xargs clang-format -i

@@ -1,6 +1,7 @@
 // raygrain compare: trees of several recipes for the same areas and rays, side by side.
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <ostream>
 
 #include <fmt/format.h>
@@ -11,7 +12,9 @@
 
 #include "cli/areas.h"
 #include "cli/commands.h"
+#include "cli/memory.h"
 #include "cli/open_scene.h"
+#include "cli/output_folder.h"
 #include "cli/pictures.h"
 #include "cli/rows.h"
 
@@ -95,7 +98,13 @@ int compare_scene(const Options& options) {
   std::vector<InfluenceArea> areas = choose_areas(options.areas, scene, output);
   if (areas.empty()) fail_without_areas(options.areas, scene, options.scene);
   scene.areas = std::move(areas);
-  if (!options.folder.empty()) make_output_folder(options.folder);
+  constexpr double kBytesPerRay = sizeof(Ray) + 2 * sizeof(Hit);
+  require_memory("comparing",
+                 bytes_of_comparison(scene.mesh, scene.areas, work.recipes.empty() ? paper_recipes() : work.recipes) +
+                     static_cast<double>(options.rays) * kBytesPerRay,
+                 "Take a smaller scene, fewer recipes or fewer rays");
+  std::optional<OutputFolder> folder;
+  if (!options.folder.empty()) folder.emplace(options.folder);
 
   const Comparison comparison = compare(scene, work);
   std::vector<ReportRow> rows;

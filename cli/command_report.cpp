@@ -13,6 +13,7 @@
 #include "cli/built_page.h"
 #include "cli/commands.h"
 #include "cli/output.h"
+#include "cli/output_folder.h"
 #include "cli/progress.h"
 #include "cli/values.h"
 #include "io/text.h"
@@ -30,10 +31,12 @@ struct Options {
   bool plain = false;
 };
 
-/// A folder stands for the results.csv in it.
+/// A folder stands for the results.csv of a study or the compare.csv of a comparison in it.
 std::string results_file(const std::string& path) {
   std::error_code ignored;
-  return fs::is_directory(path, ignored) ? (fs::path(path) / "results.csv").string() : path;
+  if (!fs::is_directory(path, ignored)) return path;
+  const fs::path study = fs::path(path) / "results.csv", comparison = fs::path(path) / "compare.csv";
+  return (!fs::exists(study, ignored) && fs::exists(comparison, ignored) ? comparison : study).string();
 }
 
 void save(const std::string& path, const std::string& text) {
@@ -92,7 +95,7 @@ void make_markdown(const Options& options, const StudyReport& report, Progress& 
   const fs::path path(options.markdown);
   const std::string folder = path.stem().string() + "-charts";
   const fs::path pictures = path.parent_path() / folder;
-  make_output_folder(pictures.string());
+  const OutputFolder made(pictures.string());
   const auto picture = [&](const Chart& chart, size_t panel) {
     const std::string name = fmt::format("{}-{}.png", chart.id, panel + 1);
     progress.show("draw " + name, 0.5);
@@ -143,7 +146,7 @@ int make_report(const Options& options) {
 Action declare_report(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   arguments.operands("RESULTS", options->results,
-                     "results.csv files of studies, folders that hold one, or compare.csv files");
+                     "results.csv files of studies, compare.csv files of comparisons, or folders that hold one");
   arguments.output("--out", "report.html", options->page, "Write the report as one self-contained page");
   arguments.output("--markdown", "FILE", options->markdown,
                    "Write it as Markdown, too, with PNG charts in a folder beside the file");

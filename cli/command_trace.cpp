@@ -17,6 +17,7 @@
 #include "base/timer.h"
 #include "cli/areas.h"
 #include "cli/commands.h"
+#include "cli/memory.h"
 #include "cli/open_scene.h"
 #include "cli/tree_file.h"
 #include "cli/values.h"
@@ -67,7 +68,11 @@ AcceleratorOptions accelerator_options(const Options& options) {
 std::vector<Ray> rays_of_set(const Scene& scene, const std::string& name) {
   std::vector<std::string_view> names;
   for (const RaySet& set : scene.ray_sets) {
-    if (set.name == name) return make_rays(set, scene.mesh);
+    if (set.name == name) {
+      require_memory("casting the rays '" + name + "'", static_cast<double>(ray_count(set) * sizeof(Ray)),
+                     "Ask for fewer rays");
+      return make_rays(set, scene.mesh);
+    }
     names.push_back(set.name);
   }
   fail_usage("--set", "the scene has no rays '" + name + "'",
@@ -198,6 +203,8 @@ Traced trace_and_verify(const Options& options, const Scene& scene, const std::v
     progress.show("build the trees", built * done);
     return true;
   };
+  require_memory("tracing", bytes_of_accelerator(scene.mesh, areas, build),
+                 "Take --quality fast, a smaller scene or fewer areas");
   const Accelerator accelerator = make_accelerator(options, scene, areas, build);
   Traced traced = trace_all(accelerator, rays, threads,
                             [&](double done) { progress.show("trace rays", built + done * (traced_share - built)); });

@@ -13,6 +13,7 @@
 #include "cli/areas.h"
 #include "cli/built_page.h"
 #include "cli/commands.h"
+#include "cli/memory.h"
 #include "cli/open_scene.h"
 #include "cli/serve.h"
 #include "cli/values.h"
@@ -86,6 +87,8 @@ ViewTree make_tree(const Scene& scene, size_t area, const Recipe& recipe, const 
 std::vector<ViewTree> make_trees(const Scene& scene, const Options& options, Progress& progress) {
   const Registry registry = default_registry();
   const std::vector<Recipe> recipes = chosen_recipes(options, !scene.areas.empty(), registry);
+  require_memory("viewing", bytes_of_comparison(scene.mesh, scene.areas, recipes),
+                 "Take a smaller scene or fewer recipes");
   const size_t areas = std::max<size_t>(scene.areas.size(), 1);
   std::vector<ViewTree> trees;
   for (size_t area = 0; area < areas; ++area)

@@ -11,6 +11,7 @@
 
 #include "base/nearest_name.h"
 #include "base/timer.h"
+#include "cli/memory.h"
 #include "cli/tree_file.h"
 #include "cli/values.h"
 
@@ -126,6 +127,9 @@ OneTree build_one_tree(const TreeOptions& options, const Scene& scene, const std
     load_one_tree(result, scene.mesh, options.file);
     return result;
   }
+  require_memory("building " + recipe_name(result.recipe),
+                 bytes_of_tree(scene.mesh, result.area ? &*result.area : nullptr, result.recipe),
+                 "Take --quality fast or a smaller scene");
   const std::string step = "build " + recipe_name(result.recipe);
   const BuildRun run{options.common.thread_count(), [&](double done) {
                        progress.show(step, kBuildShare * done);

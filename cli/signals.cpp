@@ -9,6 +9,7 @@
 
 #include "raygrain/io.h"
 
+#include "cli/output_folder.h"
 #include "cli/progress.h"
 
 namespace raygrain::cli {
@@ -30,6 +31,7 @@ void stop_drawing() {
 
 extern "C" void stop_at_once(int signal) {
   remove_unfinished_files();
+  remove_empty_new_folders();
   stop_drawing();
   if (progress_line_shown) {
     const ssize_t ignored = ::write(STDERR_FILENO, kEraseLine, sizeof kEraseLine - 1);

@@ -20,7 +20,10 @@ find_path(RAYGRAIN_STB_INCLUDE_DIR stb/stb_image_write.h REQUIRED)
 add_library(raygrain_stb INTERFACE)
 target_include_directories(raygrain_stb SYSTEM INTERFACE ${RAYGRAIN_STB_INCLUDE_DIR})
 
-# Only its headers: nothing to link.
+# Only its headers: nothing to link, but for the assertions that Clang's sanitizers switch on.
+if(RAYGRAIN_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL Clang)
+  find_library(RAYGRAIN_HIGHWAY_LIBRARY hwy REQUIRED)
+endif()
 find_path(RAYGRAIN_HIGHWAY_INCLUDE_DIR hwy/highway.h REQUIRED)
 add_library(raygrain_highway INTERFACE)
 target_include_directories(raygrain_highway SYSTEM INTERFACE ${RAYGRAIN_HIGHWAY_INCLUDE_DIR})

@@ -47,5 +47,5 @@ function(raygrain_library)
   target_include_directories(raygrain PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
                                              $<INSTALL_INTERFACE:include>)
   target_link_libraries(raygrain PRIVATE Threads::Threads $<$<NOT:$<BOOL:${RAYGRAIN_STD_THREADS}>>:TBB::tbb>
-                                         assimp::assimp fmt::fmt ZLIB::ZLIB $<BUILD_INTERFACE:raygrain_options>)
+                                         assimp::assimp fmt::fmt ZLIB::ZLIB ${RAYGRAIN_HIGHWAY_LIBRARY} $<BUILD_INTERFACE:raygrain_options>)
 endfunction()

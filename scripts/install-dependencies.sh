@@ -8,7 +8,7 @@ packages=(g++ cmake ninja-build make git
           libtbb-dev libhwy-dev libboost-dev libassimp-dev zlib1g-dev libcli11-dev nlohmann-json3-dev libfmt-dev
           libstb-dev libgtest-dev)
 if [ "${1:-build}" = full ]; then
-  packages+=(clang clang-format clang-tidy gcovr g++-aarch64-linux-gnu qemu-user)
+  packages+=(clang clang-format clang-tidy libclang-rt-dev gcovr g++-aarch64-linux-gnu qemu-user assimp-testmodels)
 fi
 
 if [ "${1:-build}" = bench ]; then

@@ -2,4 +2,4 @@
 # Lists every C++ file of the project, one a line.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-find include src cli tests examples bench \( -name '*.h' -o -name '*.cpp' \) -print 2>/dev/null | sort
+find include src cli tests examples bench fuzz \( -name '*.h' -o -name '*.cpp' \) -print 2>/dev/null | sort

@@ -42,7 +42,7 @@ struct Scene {
 /// |---------|------------------------|---------|----------|-----------------|---------------|-----------------|
 /// | city    | buildings per side     | 8       | 150      | about 440 size² | 15            | 48              |
 /// | forest  | trees per side         | 8       | 150      | about 420 size² | 16            | 49              |
-/// | terrain | cells per side of 1 km | 100     | 2200     | 2 size²         | 224           | 708             |
+/// | terrain | cells per side of 1 km | 100     | 7000     | 2 size²         | 224           | 708             |
 struct ProceduralOptions {
   std::string kind = "city";  // city | forest | terrain | random100 | random1000
   uint32_t size = 0;          // 0 = the kind's default; ignored by random100 and random1000

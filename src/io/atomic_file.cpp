@@ -65,8 +65,9 @@ class TemporaryFile {
 
   /// Brings everything to the disk and gives the file its name.
   void keep_as(const std::string& target) {
-    if (::fsync(descriptor_) != 0 && errno != EINVAL) fail(target_, errno);
-    if (::close(std::exchange(descriptor_, -1)) != 0) fail(target_, errno);
+    while (::fsync(descriptor_) != 0 && errno != EINVAL)
+      if (errno != EINTR) fail(target_, errno);
+    if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(target_, errno);
     if (::rename(slots[slot_].path, target.c_str()) != 0) fail(target_, errno);
     kept_ = true;
   }

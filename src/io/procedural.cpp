@@ -24,11 +24,11 @@ struct Kind {
   TriangleMesh (*make)(uint32_t size, uint64_t seed);
 };
 
-// The greatest sizes give about ten million triangles.
+// The greatest sizes give about ten million triangles, of terrain a hundred.
 constexpr std::array<Kind, 5> kKinds{{
     {"city", 8, 150, kAnySeed, make_city},
     {"forest", 8, 150, kAnySeed, make_forest},
-    {"terrain", 100, 2200, kAnySeed, make_terrain},
+    {"terrain", 100, 7000, kAnySeed, make_terrain},
     {"random100", 0, 0, 0xffffffffu,
      [](uint32_t, uint64_t seed) { return make_random_100(static_cast<uint32_t>(seed)); }},
     {"random1000", 0, 0, 0xffffffffu,

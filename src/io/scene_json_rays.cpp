@@ -96,7 +96,11 @@ std::vector<Ray> read_rays(const JsonReader& list) {
 }
 
 std::vector<Ray> read_ray_file(const JsonReader& file) {
-  return load_rays((std::filesystem::path(file.path()).parent_path() / file.text()).string());
+  const std::filesystem::path path = std::filesystem::path(file.path()).parent_path() / file.text();
+  std::error_code ignored;
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    file.fail(ErrorCode::kUnreadable, path.string() + " is no regular file");  // a pipe may never end
+  return load_rays(path.string());
 }
 
 void expect_set_keys(const JsonReader& set, std::string_view source) {

@@ -49,6 +49,8 @@ std::string read_whole_file(const std::string& path) {
   struct stat status {};
   if (::fstat(file.number, &status) != 0) refuse(path, errno);
   if (S_ISDIR(status.st_mode)) refuse(path, EISDIR);
+  if (S_ISCHR(status.st_mode) || S_ISBLK(status.st_mode))  // /dev/zero has no end
+    throw Error(ErrorCode::kUnreadable, path, "is a device, not a file", "give a file or a pipe");
   std::string bytes;
   size_t used = 0;
   bytes.resize(static_cast<size_t>(std::max<off_t>(status.st_size, 0)) + 1);

@@ -7,7 +7,8 @@
 
 namespace raygrain {
 
-/// The bytes of a file. Throws Error: kNotFound, kUnreadable (a folder, no permission, a read error).
+/// The bytes of a file. Throws Error: kNotFound, kUnreadable (a folder, a device, no permission, a read
+/// error).
 std::string read_whole_file(const std::string& path);
 
 /// The float nearest to a decimal number, "inf" or "nan"; nothing if the text is anything else, or too large.

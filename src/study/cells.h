@@ -17,12 +17,10 @@ class Cells {
   explicit Cells(const std::vector<StudyColumn>& columns) : columns_(columns), cells_(columns.size()) {}
 
   void set(std::string_view column, std::string text) {
-    for (size_t i = 0; i < columns_.size(); ++i) {
-      if (columns_[i].name != column) continue;
-      cells_[i] = std::move(text);
-      return;
-    }
-    RAYGRAIN_CHECK(!"a column of this study");
+    size_t i = 0;
+    while (i < columns_.size() && columns_[i].name != column) ++i;
+    RAYGRAIN_CHECK_LT(i, columns_.size());  // a column of this study
+    if (i < columns_.size()) cells_[i] = std::move(text);
   }
   void set(std::string_view column, double value) { set(column, study_cell(value)); }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -20,7 +21,7 @@ const std::vector<std::string> kFinished{"compare.csv", "compare.json", "sun-cos
 void interrupt_after(Milliseconds delay, int signal) {
   SCOPED_TRACE("after " + std::to_string(delay.count()) + " ms, signal " + std::to_string(signal));
   const TemporaryFolder folder;
-  const std::string out = folder.file("out");
+  const std::string out = folder.file("new/folder");
   RunningProgram program({"compare", "procedural:city?size=60", "--rays", "20000", "--out", out}, folder.file("output"),
                          folder.file("errors"));
   std::this_thread::sleep_for(delay);
@@ -34,6 +35,8 @@ void interrupt_after(Milliseconds delay, int signal) {
     EXPECT_EQ(exit_code, 128 + signal);
   }
   EXPECT_EQ(read_file(folder.file("errors")), "");
+  // A folder that was made for nothing goes again.
+  EXPECT_EQ(std::filesystem::exists(folder.file("new")), !names_in(out).empty());
   for (const std::string& name : names_in(out)) {
     EXPECT_NE(std::find(kFinished.begin(), kFinished.end(), name), kFinished.end()) << name;
     const std::string content = read_file(out + "/" + name);
@@ -49,6 +52,18 @@ void interrupt_after(Milliseconds delay, int signal) {
 TEST(Interrupt, LeavesNoHalfWrittenFile) {
   for (const int delay : {100, 300, 700, 1500}) interrupt_after(Milliseconds(delay), SIGINT);
   interrupt_after(Milliseconds(200), SIGTERM);
+}
+
+TEST(Interrupt, LeavesAnEmptyFolderThatWasThere) {
+  const TemporaryFolder folder;
+  const std::string out = folder.file("out");
+  std::filesystem::create_directory(out);
+  RunningProgram program({"compare", "procedural:city?size=60", "--rays", "20000", "--out", out}, folder.file("output"),
+                         folder.file("errors"));
+  std::this_thread::sleep_for(Milliseconds(500));
+  program.send(SIGINT);
+  program.wait();
+  EXPECT_TRUE(std::filesystem::exists(out));
 }
 
 TEST(Interrupt, EndsAWriteInProgressWithoutATrace) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -38,14 +39,21 @@ void limit(int resource, const std::optional<rlim_t>& bytes) {
   if (::setrlimit(resource, &limits) != 0) ::_exit(kCannotStart);
 }
 
+void become_nobody() {
+  constexpr unsigned kNobody = 65534;
+  if (::geteuid() == 0 && (::setgid(kNobody) != 0 || ::setuid(kNobody) != 0)) ::_exit(kCannotStart);
+}
+
 [[noreturn]] void become_program(std::vector<std::string> arguments, const std::string& output_path,
                                  const std::string& error_path, const RunOptions& options) {
   redirect(options.standard_output.empty() ? output_path : options.standard_output, STDOUT_FILENO);
-  redirect(error_path, STDERR_FILENO);
+  redirect(options.standard_error.empty() ? error_path : options.standard_error, STDERR_FILENO);
   if (options.closed_reader) redirect_to_nobody();
   if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(kCannotStart);
   limit(RLIMIT_FSIZE, options.file_size);
   limit(RLIMIT_AS, options.memory);
+  if (options.unprivileged) become_nobody();
+  if (!options.memory_left.empty()) ::setenv("RAYGRAIN_MEMORY", options.memory_left.c_str(), 1);
   ::signal(SIGINT, SIG_DFL);
   arguments.insert(arguments.begin(), options.program.empty() ? RAYGRAIN_PROGRAM : options.program);
   std::vector<char*> pointers;

@@ -14,9 +14,12 @@ struct RunOptions {
   std::optional<rlim_t> file_size;   // bytes that a file may grow to
   std::optional<rlim_t> memory;      // bytes of address space
   std::string standard_output = {};  // a path, e.g. /dev/full; empty: captured
+  std::string standard_error = {};   // ...
   bool closed_reader = false;        // standard output is a pipe that nobody reads
   std::string folder = {};           // to run in; empty: that of the tests
   std::string program = {};          // empty: raygrain
+  bool unprivileged = false;         // as another user where this one is root
+  std::string memory_left = {};      // MiB that the program shall believe in
 };
 
 struct RunResult {

@@ -57,6 +57,20 @@ TEST_F(ReportCommand, WritesAPageWithoutScripts) {
   EXPECT_NE(page.find("MINE+ALL"), std::string::npos);
 }
 
+/// Of a study or of a comparison; where both are there, the study's.
+TEST_F(ReportCommand, TakesFoldersThatHoldResults) {
+  fs::create_directories(path("compared"));
+  write_file(path("compared/compare.csv"), "name,area,real_cost,pruned_cost\nSAH+ALL,sun,3,2\nPAH+ALL,sun,2,1\n");
+  const RunResult compared = run_program({"report", path("compared"), "--static", "--out", path("report.html")});
+  EXPECT_EQ(compared.exit_code, 0) << compared.errors;
+  EXPECT_NE(compared.output.find("PAH+ALL is best"), std::string::npos) << compared.output;
+  write_file(path("compared/results.csv"), kResults);
+  const RunResult study = run_program({"report", path("compared"), "--static", "--out", path("report.html")});
+  EXPECT_NE(study.output.find("Figure 16"), std::string::npos) << study.output;
+  fs::create_directories(path("nothing"));
+  expect_refusal({path("nothing"), "--out", path("report.html")}, 1, "results.csv");
+}
+
 TEST_F(ReportCommand, FillsThePageThatItIsGiven) {
   write_file(path("page.html"), "<script>@RAYGRAIN_REPORT@</script>");
   const RunResult result =

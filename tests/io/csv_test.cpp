@@ -111,6 +111,8 @@ TEST(Csv, MissingAndUnreadableFiles) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(error_of([&] { load_rays(folder.file("none.csv")); }).code, ErrorCode::kNotFound);
   EXPECT_EQ(error_of([&] { load_rays(folder.path()); }).code, ErrorCode::kUnreadable);
+  for (const char* device : {"/dev/zero", "/dev/urandom", "/dev/null"})  // two of them have no end
+    EXPECT_EQ(error_of([&] { load_rays(device); }).code, ErrorCode::kUnreadable) << device;
 }
 
 TEST(Csv, RandomBytesNeverCrash) {

@@ -174,7 +174,7 @@ TEST(ParseProcedural, RefusesWithAHint) {
       {"procedural:city?size=99999999999", "size is not a whole number in range"},
       {"procedural:city?size=151", "Choose 1 to 150"},
       {"procedural:forest?size=151", "Choose 1 to 150"},
-      {"procedural:terrain?size=2201", "Choose 1 to 2200"},
+      {"procedural:terrain?size=7001", "Choose 1 to 7000"},
       {"procedural:city?sed=4", "Did you mean \"seed\"?"},
       {"procedural:city?seed=1.5", "\"1.5\""},
       {"procedural:random100?seed=4294967296", "seed 4294967296 is too large"},

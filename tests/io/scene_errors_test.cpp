@@ -189,6 +189,8 @@ std::vector<BadScene> ray_rows() {
       {"ray of seven", with_rays(R"({"name": "r", "rays": [[0, 0, 0, 0, 0, 1, 0]]})"), malformed, "#/rays/0/rays/0",
        "7 numbers"},
       {"missing ray file", with_rays(R"({"name": "r", "file": "no.csv"})"), ErrorCode::kNotFound, "no.csv", ""},
+      {"endless ray file", with_rays(R"({"name": "r", "file": "/dev/zero"})"), ErrorCode::kUnreadable, "#/rays/0/file",
+       "no regular file"},
       {"set twice", with_rays(R"({"name": "r", "rays": []}, {"name": "r", "rays": []})"), malformed, "#/rays/1",
        "another ray set"},
   };
