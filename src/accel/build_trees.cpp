@@ -65,10 +65,11 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
   const auto samples = [&](const InfluenceArea* area) {
     return options.samples ? options.samples(area) : std::vector<Ray>{};
   };
-  JointProgress progress(options.progress, areas.size() + 1);
+  const size_t locals = options.space == LocalSpace::kNone ? 0 : areas.size();
+  JointProgress progress(options.progress, locals + 1);
   BuiltTrees trees;
-  trees.locals.resize(areas.size());
-  std::vector<std::optional<SearchTree>> searches(areas.size());
+  trees.locals.resize(locals);
+  std::vector<std::optional<SearchTree>> searches(locals);
   const bool in_ray_space = options.space == LocalSpace::kRay && options.traversal == Traversal::kWide;
   const auto corners = in_ray_space ? std::make_shared<const TriangleCorners>(mesh) : nullptr;
   const auto build_local = [&](size_t i) {
@@ -97,7 +98,7 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
     }
     progress.reach(task, 1);
   };
-  parallel_for(areas.size() + 1, 1, options.threads, [&](size_t begin, size_t end) {
+  parallel_for(locals + 1, 1, options.threads, [&](size_t begin, size_t end) {
     for (size_t task = begin; task < end; ++task) build(task);
   });
   for (std::optional<SearchTree>& search : searches) trees.local_searches.push_back(std::move(*search));

@@ -1,0 +1,45 @@
+// Which structure answers which rays: decided once, by the work that sample rays cost. Work is counted, not timed, so
+// equal builds take equal routes. No answer depends on them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "raygrain/coverage.h"
+
+#include "accel/foreign.h"
+
+namespace raygrain {
+
+/// Of one kind of question.
+struct Route {
+  std::vector<uint8_t> covers;    // by area: its coverage is asked
+  std::vector<uint8_t> searches;  // by area: its local tree is searched
+  bool covers_some = false, searches_some = false;
+  ForeignFilter foreign;  // rays that none of these concerns
+};
+
+/// Any hit or the nearest one, of one ray, and of arrays, whose rays the global tree answers several at a time.
+struct Routes {
+  Route any, nearest, any_of_many, nearest_of_many;
+};
+
+/// What sample rays are expected to cost each way, in nanoseconds of the machine on which the prices were found: the
+/// rays along an area, which its coverage may answer, and rays within its tolerance.
+struct WayCosts {
+  double coverage = 0, local = 0, global = 0;
+  double off_local = 0, off_global = 0;
+};
+struct AreaCosts {
+  WayCosts any, nearest;
+};
+
+/// A ray of many costs the global tree so much of what it costs alone.
+double share_of_many(Isa isa);
+
+/// The cheapest ways. Without costs every structure that is there is used.
+Routes choose_routes(std::span<const AreaGeometry> areas, std::span<const Coverage> coverages, bool has_locals,
+                     std::span<const AreaCosts> costs, double many);
+
+}  // namespace raygrain
