@@ -52,11 +52,7 @@ std::vector<Coverage> build_coverages(const std::shared_ptr<const TriangleMesh>&
   CoverageOptions coverage = *options.coverage;
   coverage.threads = options.threads;
   if (!coverage.isa) coverage.isa = options.isa;
-  std::vector<Coverage> coverages(areas.size());
-  parallel_for(areas.size(), 1, options.threads, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) coverages[i] = Coverage(mesh, areas[i], coverage);
-  });
-  return coverages;
+  return Coverage::of_areas(mesh, areas, coverage);
 }
 
 /// One task per tree, the global one first because it is the longest.

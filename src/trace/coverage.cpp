@@ -136,8 +136,15 @@ void CoverageCounters::add(const CoverageCounters& other) {
 
 Coverage::Coverage() : data_(std::make_shared<const Data>()) {}
 
-Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea& area,
-                   const CoverageOptions& options) {
+struct Coverage::Shared {
+  MeshNeighbours neighbours;
+};
+
+Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea& area, const CoverageOptions& options)
+    : Coverage(std::move(mesh), area, options, nullptr) {}
+
+Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea& area, const CoverageOptions& options,
+                   const Shared* shared) {
   if (mesh == nullptr) throw Error(ErrorCode::kUsage, "mesh", "is missing");
   if (!(options.cells_per_triangle > 0) || options.triangles_per_tile == 0)
     throw Error(ErrorCode::kUsage, "CoverageOptions", "densities must be positive");
@@ -146,9 +153,23 @@ Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea
     throw Error(ErrorCode::kUsage, "CoverageOptions::isa", "this CPU does not offer '" + std::string(name(isa)) + "'");
   const Timer timer;
   const CoverageDensity density{options.cells_per_triangle, static_cast<double>(options.triangles_per_tile)};
-  Data data{build_coverage(std::move(mesh), AreaGeometry(area), density, options.threads), isa, options.sorts, 0};
+  Data data{build_coverage(std::move(mesh), AreaGeometry(area), density,
+                           shared != nullptr ? &shared->neighbours : nullptr, options.threads),
+            isa, options.sorts, 0};
   data.seconds = timer.seconds();
   data_ = std::make_shared<const Data>(std::move(data));
+}
+
+std::vector<Coverage> Coverage::of_areas(std::shared_ptr<const TriangleMesh> mesh, std::span<const InfluenceArea> areas,
+                                         const CoverageOptions& options) {
+  if (mesh == nullptr) throw Error(ErrorCode::kUsage, "mesh", "is missing");
+  std::vector<Coverage> coverages(areas.size());
+  if (areas.empty()) return coverages;
+  const Shared shared{find_neighbours(*mesh)};
+  parallel_for(areas.size(), 1, options.threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) coverages[i] = Coverage(mesh, areas[i], options, &shared);
+  });
+  return coverages;
 }
 
 int Coverage::sense(Vec3 direction) const {

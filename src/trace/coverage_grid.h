@@ -69,7 +69,7 @@ struct CoverageCell {
 
 struct CoverageTile {
   uint32_t first_cell = 0;
-  uint32_t levels = 0;              // 2^levels x 2^levels cells
+  uint32_t across = 1;              // across x across cells
   float lowest = 0, per_depth = 1;  // codes per unit of depth
 };
 
@@ -104,8 +104,15 @@ struct CoverageDensity {
   double cells_per_triangle, triangles_per_tile;
 };
 
-/// Useless (without cells) where nothing can be seen or too much is too near to an eye. Deterministic.
+/// Per triangle and edge (from corner i to corner i + 1): the one other triangle with the same two points at its ends,
+/// or kNoNeighbour where there is none or more than one.
+using MeshNeighbours = std::vector<std::array<uint32_t, 3>>;
+inline constexpr uint32_t kNoNeighbour = 0xffffffffu;
+MeshNeighbours find_neighbours(const TriangleMesh& mesh);
+
+/// Useless (without cells) where nothing can be seen or too much is too near to an eye. Deterministic. `neighbours` of
+/// the mesh where they are known, or null.
 CoverageGrid build_coverage(std::shared_ptr<const TriangleMesh> mesh, const AreaGeometry& area,
-                            const CoverageDensity& density, unsigned threads);
+                            const CoverageDensity& density, const MeshNeighbours* neighbours, unsigned threads);
 
 }  // namespace raygrain
