@@ -324,7 +324,10 @@ class Builder {
       }
       row = {};
     }
-    grid_.cells.push_back({0, 0, static_cast<uint32_t>(grid_.references.size())});
+    const auto end = static_cast<uint32_t>(grid_.references.size());
+    for (CoverageCell& cell : grid_.cells)
+      if (cell.first < end) cell.top = grid_.references[cell.first].triangle();
+    grid_.cells.push_back({0, 0, end});
   }
 
   CoverageGrid& grid_;

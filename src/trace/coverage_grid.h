@@ -65,6 +65,7 @@ struct CoverageCell {
   uint16_t cover = 0;  // a query with a lower code is hidden; 0: none is
   uint16_t far = 0;    // a query with a higher code is free
   uint32_t first = 0;  // of its references; they end where those of the next cell begin
+  uint32_t top = 0;    // the triangle of the first one, to be fetched before the reference is there
 };
 
 struct CoverageTile {
