@@ -26,6 +26,7 @@ struct TreePrices {
 constexpr TreePrices kWidePrices{15, 20, 28, 25}, kColumnPrices{45, 25, 30, 60}, kConePrices{80, 28, 50, 60};
 constexpr double kWalk = 120;  // a local search: finding the area, and how far its region reaches
 constexpr double kCell = 40, kCellTest = 15, kCellConfirmation = 60;  // a ray, a triangle of its cell, an intersection
+constexpr double kFarther = 12;  // a ray waits so much longer for a grid of twice the size, from a megabyte on
 
 struct Samples {
   std::vector<Ray> along, off;
@@ -85,6 +86,12 @@ class Pricing {
   }
 
  private:
+  /// log2(1 + x), with lines between the powers of two: the library's logarithms differ.
+  static double octaves(double x) {
+    int exponent = 0;
+    const double fraction = std::frexp(1 + x, &exponent);  // in [1/2, 1)
+    return exponent - 2 + 2 * fraction;
+  }
   static double per_ray(double sum, size_t rays) { return rays == 0 ? 0 : sum / static_cast<double>(rays); }
 
   double by_global(std::span<const Ray> rays) const {
@@ -129,7 +136,8 @@ class Pricing {
     const double sum = kCellTest * static_cast<double>(c.triangle_tests) +
                        kCellConfirmation * static_cast<double>(c.confirmations) +
                        global * static_cast<double>(rest.size());
-    return kCell + per_ray(sum, rays.size());
+    const double megabytes = static_cast<double>(coverage.memory_bytes()) * 0x1p-20;
+    return kCell + kFarther * octaves(megabytes) + per_ray(sum, rays.size());
   }
 
   const PricedParts& parts_;

@@ -33,8 +33,7 @@ constexpr size_t kMostRaysPerTask = size_t{1} << 16;  // so many fit a cache wit
 constexpr size_t kLeastRaysPerTask = 4096;
 
 size_t bytes_of(const CoverageGrid& grid) {
-  return grid.tiles.capacity() * sizeof(CoverageTile) + grid.cells.capacity() * sizeof(CoverageCell) +
-         grid.references.capacity() * sizeof(CoverageReference) + grid.triangles.capacity() * sizeof(CoverageTriangle) +
+  return grid.memory.size() + grid.tiles.capacity() * sizeof(CoverageTile) +
          grid.near_triangles.capacity() * sizeof(uint32_t);
 }
 

@@ -298,36 +298,30 @@ class Builder {
     if (references > 0xffffffffu || cells > 0xffffffffu)
       throw Error(ErrorCode::kLimit, "coverage", "more than 2^32 cells or references");
     std::ranges::fill(number, kNoTriangle);
-    grid_.cells.reserve(cells + 1);
-    grid_.references.reserve(references);
-    grid_.triangles.reserve(triangles);
-    uint32_t tile = 0;
+    grid_.allocate(triangles, cells + 1, references);
+    uint32_t tile = 0, cell_number = 0, reference_number = 0, known_number = 0;
     for (Row& row : rows) {
-      const auto first = static_cast<uint32_t>(grid_.references.size());
-      auto cell_number = static_cast<uint32_t>(grid_.cells.size());
+      uint32_t first_cell = cell_number;
       for (uint32_t x = 0; x < grid_.tiles_x; ++x, ++tile) {
-        grid_.tiles[tile].first_cell = cell_number;
-        cell_number += grid_.tiles[tile].across * grid_.tiles[tile].across;
+        grid_.tiles[tile].first_cell = first_cell;
+        first_cell += grid_.tiles[tile].across * grid_.tiles[tile].across;
       }
-      for (CoverageCell cell : row.cells) {
-        cell.first += first;
-        grid_.cells.push_back(cell);
-      }
+      const uint32_t first = reference_number;
       for (const Reference& reference : row.references) {
         const CoverageTriangle& record = row.records[reference.record];
         uint32_t& known = number[record.id];
-        if (known == kNoTriangle) {
-          known = static_cast<uint32_t>(grid_.triangles.size());
-          grid_.triangles.push_back(record);
-        }
-        grid_.references.push_back({static_cast<uint16_t>(known), static_cast<uint16_t>(known >> 16), reference.code});
+        if (known == kNoTriangle) grid_.triangles[known = known_number++] = record;
+        grid_.references[reference_number++] = {static_cast<uint16_t>(known), static_cast<uint16_t>(known >> 16),
+                                                reference.code};
+      }
+      for (CoverageCell cell : row.cells) {
+        cell.first += first;
+        if (cell.first < reference_number) cell.top = grid_.references[cell.first].triangle();
+        grid_.cells[cell_number++] = cell;
       }
       row = {};
     }
-    const auto end = static_cast<uint32_t>(grid_.references.size());
-    for (CoverageCell& cell : grid_.cells)
-      if (cell.first < end) cell.top = grid_.references[cell.first].triangle();
-    grid_.cells.push_back({0, 0, end});
+    grid_.cells[cell_number] = {0, 0, reference_number};
   }
 
   CoverageGrid& grid_;

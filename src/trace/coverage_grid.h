@@ -5,10 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <new>
+#include <span>
 #include <vector>
 
 #include "raygrain/area.h"
 #include "raygrain/mesh.h"
+
+#include "trace/wide_tree.h"
 
 namespace raygrain {
 
@@ -93,12 +97,22 @@ struct CoverageGrid {
   float tiles_per_unit = 1;
   uint32_t tiles_x = 0, tiles_y = 0;
   std::vector<CoverageTile> tiles;
-  std::vector<CoverageCell> cells;  // and one more
-  std::vector<CoverageReference> references;
-  std::vector<CoverageTriangle> triangles;
+  LineMemory memory;  // of the following: together, so that large pages serve them
+  std::span<CoverageTriangle> triangles;
+  std::span<CoverageCell> cells;  // and one more
+  std::span<CoverageReference> references;
   std::vector<uint32_t> near_triangles;  // ids of those that all rays of an eye must ask
 
   bool is_useful() const { return !cells.empty(); }
+
+  void allocate(size_t triangle_count, size_t cell_count, size_t reference_count) {
+    const size_t cells_at = triangle_count * sizeof(CoverageTriangle);
+    const size_t references_at = cells_at + cell_count * sizeof(CoverageCell);
+    memory = LineMemory(references_at + reference_count * sizeof(CoverageReference));
+    triangles = {new (memory.data()) CoverageTriangle[triangle_count], triangle_count};
+    cells = {new (memory.data() + cells_at) CoverageCell[cell_count], cell_count};
+    references = {new (memory.data() + references_at) CoverageReference[reference_count], reference_count};
+  }
 };
 
 struct CoverageDensity {
