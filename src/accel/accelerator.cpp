@@ -107,6 +107,18 @@ void for_chunks(size_t rays, unsigned threads, AcceleratorCounters* counters, co
   });
 }
 
+/// Rays along an area that its coverage answers, whatever region they are in.
+std::optional<Hit> nearest_covered(const Route& route, const Ray& ray) {
+  for (const Coverage& coverage : route.asked)
+    if (const auto hit = coverage.intersect(ray)) return hit;
+  return {};
+}
+std::optional<bool> any_covered(const Route& route, const Ray& ray) {
+  for (const Coverage& coverage : route.asked)
+    if (const auto hit = coverage.occluded(ray)) return hit;
+  return {};
+}
+
 /// Are all hits of the ray that can be nearer than `best` known, when those with t <= exit are?
 bool is_final(const Hit& best, const Ray& ray, float exit) {
   return std::min(best.t, ray.tmax) <= exit;
@@ -176,20 +188,6 @@ void Accelerator::Parts::choose_routes(bool by_cost, const SampleSource& samples
   }
 }
 
-std::optional<Hit> Accelerator::Parts::nearest_covered(const Ray& ray, const Route& route) const {
-  for (size_t i = 0; i < coverages.size(); ++i)
-    if (route.covers[i] != 0)
-      if (const auto hit = coverages[i].intersect(ray)) return hit;
-  return {};
-}
-
-std::optional<bool> Accelerator::Parts::any_covered(const Ray& ray, const Route& route) const {
-  for (size_t i = 0; i < coverages.size(); ++i)
-    if (route.covers[i] != 0)
-      if (const auto hit = coverages[i].occluded(ray)) return hit;
-  return {};
-}
-
 void Accelerator::Parts::count_use(uint32_t area, const Ray& ray, AcceleratorCounters* counters) const {
   const std::optional<FrameTree>& tree = searches[area].in_ray_space();
   if (counters == nullptr || !tree) return;
@@ -204,7 +202,7 @@ Hit Accelerator::Parts::nearest(const Ray& ray, const Route& route, AcceleratorC
     if (counters != nullptr) ++counters->invalid_rays;
     return {};
   }
-  if (const auto hit = route.covers_some ? nearest_covered(ray, route) : std::nullopt) {
+  if (const auto hit = nearest_covered(route, ray)) {
     if (counters != nullptr) ++counters->covered;
     return *hit;
   }
@@ -231,7 +229,7 @@ bool Accelerator::Parts::any(const Ray& ray, const Route& route, AcceleratorCoun
     if (counters != nullptr) ++counters->invalid_rays;
     return false;
   }
-  if (const auto hit = route.covers_some ? any_covered(ray, route) : std::nullopt) {
+  if (const auto hit = any_covered(route, ray)) {
     if (counters != nullptr) ++counters->covered;
     return *hit;
   }
@@ -254,13 +252,19 @@ bool Accelerator::Parts::any(const Ray& ray, const Route& route, AcceleratorCoun
 
 Hit Accelerator::intersect(const Ray& ray, AcceleratorCounters* counters) const {
   const Route& route = parts_->routes.nearest;
-  if (counters == nullptr && route.foreign.is_foreign(ray)) return parts_->global.intersect(ray, {}, {}, nullptr);
+  if (counters == nullptr) {
+    if (route.foreign.is_foreign(ray)) return parts_->global.intersect(ray, {}, {}, nullptr);
+    if (const auto hit = nearest_covered(route, ray)) return *hit;
+  }
   return parts_->nearest(ray, route, counters);
 }
 
 bool Accelerator::occluded(const Ray& ray, AcceleratorCounters* counters) const {
   const Route& route = parts_->routes.any;
-  if (counters == nullptr && route.foreign.is_foreign(ray)) return parts_->global.occluded(ray, {}, nullptr);
+  if (counters == nullptr) {
+    if (route.foreign.is_foreign(ray)) return parts_->global.occluded(ray, {}, nullptr);
+    if (const auto hit = any_covered(route, ray)) return *hit;
+  }
   return parts_->any(ray, route, counters);
 }
 

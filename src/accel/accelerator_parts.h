@@ -30,9 +30,6 @@ struct Accelerator::Parts {
   /// Adds what there is of an area's local tree.
   void describe_local(size_t area, AreaReport& report) const;
 
-  /// Rays along an area that its coverage answers, whatever region they are in.
-  std::optional<Hit> nearest_covered(const Ray& ray, const Route& route) const;
-  std::optional<bool> any_covered(const Ray& ray, const Route& route) const;
   void count_use(uint32_t area, const Ray& ray, AcceleratorCounters* counters) const;
 
   Hit nearest(const Ray& ray, const Route& route, AcceleratorCounters* counters) const;

@@ -25,8 +25,9 @@ struct TreePrices {
 };
 constexpr TreePrices kWidePrices{15, 20, 28, 25}, kColumnPrices{45, 25, 30, 60}, kConePrices{80, 28, 50, 60};
 constexpr double kWalk = 120;  // a local search: finding the area, and how far its region reaches
-constexpr double kCell = 27, kCellTest = 11.5, kCellConfirmation = 75;  // a ray, a triangle of its cell, an intersection
-constexpr double kFarther = 5;  // a ray waits so much longer for a grid of twice the size, from a megabyte on
+constexpr double kCell = 27, kCellTest = 11.5,
+                 kCellConfirmation = 75;  // a ray, a triangle of its cell, an intersection
+constexpr double kFarther = 5;            // a ray waits so much longer for a grid of twice the size, from a megabyte on
 
 struct Samples {
   std::vector<Ray> along, off;

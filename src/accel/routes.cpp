@@ -22,13 +22,14 @@ Choice cheapest(const WayCosts& costs, bool can_cover, bool can_search, double m
   return choice;
 }
 
-Route make_route(std::span<const AreaGeometry> areas, std::span<const Choice> choices) {
+Route make_route(std::span<const AreaGeometry> areas, std::span<const Coverage> coverages,
+                 std::span<const Choice> choices) {
   Route route;
   std::vector<Reach> reaches;
   for (const Choice& choice : choices) {
+    if (choice.covers) route.asked.push_back(coverages[route.covers.size()]);
     route.covers.push_back(choice.covers ? 1 : 0);
     route.searches.push_back(choice.searches ? 1 : 0);
-    route.covers_some |= choice.covers;
     route.searches_some |= choice.searches;
     reaches.push_back(choice.searches ? Reach::kTolerance : choice.covers ? Reach::kAxis : Reach::kNone);
   }
@@ -51,7 +52,7 @@ Routes choose_routes(std::span<const AreaGeometry> areas, std::span<const Covera
       choices.push_back(costs.empty() ? Choice{can_cover, has_locals}
                                       : cheapest(costs[i].*kind, can_cover, has_locals, share));
     }
-    return make_route(areas, choices);
+    return make_route(areas, coverages, choices);
   };
   return {route(&AreaCosts::any, 1), route(&AreaCosts::nearest, 1), route(&AreaCosts::any, many),
           route(&AreaCosts::nearest, many)};

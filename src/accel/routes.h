@@ -14,9 +14,10 @@ namespace raygrain {
 
 /// Of one kind of question.
 struct Route {
-  std::vector<uint8_t> covers;    // by area: its coverage is asked
+  std::vector<Coverage> asked;    // the coverages that are asked, in the order of areas; nothing of invalid rays
+  std::vector<uint8_t> covers;    // by area: its coverage is among them
   std::vector<uint8_t> searches;  // by area: its local tree is searched
-  bool covers_some = false, searches_some = false;
+  bool searches_some = false;
   ForeignFilter foreign;  // rays that none of these concerns
 };
 

@@ -187,7 +187,7 @@ bool Coverage::has_eye(Vec3 point) const {
 std::optional<bool> Coverage::occluded(const Ray& ray) const {
   const CoverageGrid& grid = data_->grid;
   SingleColumn column{};
-  if (!is_useful() || ray.tmin != 0) return {};
+  if (!is_useful() || ray.tmin != 0 || !(ray.tmax >= 0)) return {};
   if (!(grid.map.is_eye ? column_to_eye(grid, ray, column) : column_along(grid, ray, 1, column))) return {};
   return data_->kernels->any_of_one(grid, column, ray);
 }
