@@ -52,6 +52,10 @@ double nanoseconds_per_ray(std::span<const Ray> rays, const Trace& trace) {
   return least;
 }
 
+std::string cost_text(double nanoseconds) {
+  return std::isinf(nanoseconds) ? "none" : line("%.0f", nanoseconds);
+}
+
 std::string route_text(const char* kind, const Route& route, std::span<const AreaCosts> costs,
                        WayCosts AreaCosts::*which, double many, size_t area) {
   const bool covers = route.covers[area] != 0, searches = route.searches[area] != 0;
@@ -62,8 +66,9 @@ std::string route_text(const char* kind, const Route& route, std::span<const Are
                      ", near it " + (searches ? "its tree" : "global tree");
   if (costs.empty()) return text;
   const WayCosts& c = costs[area].*which;
-  return text + line(" (predicted ns along it: coverage %.0f, tree %.0f, global %.0f; near it: tree %.0f, global %.0f)",
-                     c.coverage, c.local, c.global * many, c.off_local, c.off_global * many);
+  return text + line(" (predicted ns along it: coverage %s, tree %s, global %s; near it: tree %s, global %s)",
+                     cost_text(c.coverage).c_str(), cost_text(c.local).c_str(), cost_text(c.global * many).c_str(),
+                     cost_text(c.off_local).c_str(), cost_text(c.off_global * many).c_str());
 }
 
 /// A line for each kind of question.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "raygrain/rays.h"
 
@@ -102,7 +101,7 @@ class Pricing {
   }
 
   double by_local(size_t area, std::span<const Ray> rays) const {
-    if (rays.empty()) return std::numeric_limits<double>::infinity();
+    if (rays.empty()) return WayCosts::kNone;
     Route route;
     route.searches.assign(parts_.geometries.size(), 0);
     route.searches[area] = 1;
@@ -121,7 +120,8 @@ class Pricing {
   /// As a batch, which counts. Rays that coverage leaves cost the cell and the global tree.
   double by_coverage(size_t area, std::span<const Ray> rays, double global) const {
     const Coverage& coverage = parts_.coverages[area];
-    if (!coverage.is_useful() || rays.empty()) return 0;
+    if (!coverage.is_useful()) return WayCosts::kNone;
+    if (rays.empty()) return 0;
     const bool is_plane = parts_.geometries[area].is_plane();
     std::vector<Vec3> points;
     for (const Ray& ray : rays) points.push_back(is_plane || any_ ? ray.origin : ray.direction);

@@ -5,7 +5,7 @@
 namespace raygrain {
 namespace {
 
-/// A local tree must be expected to save as much.
+/// What is not the global tree must be expected to save a tenth.
 constexpr double kLeastGain = 0.9;
 
 struct Choice {
@@ -14,7 +14,7 @@ struct Choice {
 
 /// `many`: what the global tree's costs are multiplied by.
 Choice cheapest(const WayCosts& costs, bool can_cover, bool can_search, double many) {
-  Choice choice{can_cover && costs.coverage <= costs.global * many, false};
+  Choice choice{can_cover && costs.coverage <= kLeastGain * costs.global * many, false};
   const double along = choice.covers ? 0 : 1;  // rays along the area that a tree must answer
   const double local = costs.off_local + along * costs.local, global = costs.off_global + along * costs.global;
   choice.searches = can_search && local <= kLeastGain * global * many;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,10 +28,11 @@ struct Routes {
 };
 
 /// What sample rays are expected to cost each way, in nanoseconds of the machine on which the prices were found: the
-/// rays along an area, which its coverage may answer, and rays within its tolerance.
+/// rays along an area, which its coverage may answer, and rays within its tolerance. Infinite where there is no way.
 struct WayCosts {
-  double coverage = 0, local = 0, global = 0;
-  double off_local = 0, off_global = 0;
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  double coverage = kNone, local = kNone, global = 0;
+  double off_local = kNone, off_global = 0;
 };
 struct AreaCosts {
   WayCosts any, nearest;
