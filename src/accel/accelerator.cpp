@@ -176,7 +176,7 @@ void Accelerator::Parts::choose_routes(bool by_cost, const SampleSource& samples
       nearest(ray, route, &counters);
   };
   if (by_cost) costs = predict_costs({*mesh, geometries, coverages, !locals.empty(), trace}, samples);
-  many_share = share_of_many(isa);
+  many_share = share_of_many(isa, global.wide_bytes());
   routes = raygrain::choose_routes(geometries, coverages, !locals.empty(), costs, many_share);
   for (size_t i = 0; i < locals.size(); ++i) {
     const auto searched = [i](const Route& route) { return route.searches[i] != 0; };

@@ -39,10 +39,6 @@ Route make_route(std::span<const AreaGeometry> areas, std::span<const Coverage> 
 
 }  // namespace
 
-double share_of_many(Isa isa) {
-  return isa == Isa::kAvx512 ? 0.62 : 1;  // without its vectors rays are searched one after the other
-}
-
 Routes choose_routes(std::span<const AreaGeometry> areas, std::span<const Coverage> coverages, bool has_locals,
                      std::span<const AreaCosts> costs, double many) {
   const auto route = [&](WayCosts AreaCosts::*kind, double share) {

@@ -38,10 +38,8 @@ struct AreaCosts {
   WayCosts any, nearest;
 };
 
-/// A ray of many costs the global tree so much of what it costs alone.
-double share_of_many(Isa isa);
-
-/// The cheapest ways. Without costs every structure that is there is used.
+/// The cheapest ways. Without costs every structure that is there is used. `many`: what share of the global tree's
+/// costs a ray of many has.
 Routes choose_routes(std::span<const AreaGeometry> areas, std::span<const Coverage> coverages, bool has_locals,
                      std::span<const AreaCosts> costs, double many);
 

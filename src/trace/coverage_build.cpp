@@ -268,11 +268,12 @@ class Builder {
     // What lies wholly behind the cover, with room for ties, is nobody's first hit.
     if (cover > -kInf) {
       const float behind = cover - 4 * slack(cover) - static_cast<float>(grid_.errors.depth * 8);
-      const auto end = std::ranges::remove_if(list, [&](const InCell& one) { return one.highest < behind; });
-      list = list.first(list.size() - end.size());
+      const auto end =
+          std::remove_if(list.begin(), list.end(), [&](const InCell& one) { return one.highest < behind; });
+      list = list.first(static_cast<size_t>(end - list.begin()));
     }
     const std::vector<SeenTriangle>& seen = scratch.seen;
-    std::ranges::sort(list, [&](const InCell& a, const InCell& b) {
+    std::sort(list.begin(), list.end(), [&](const InCell& a, const InCell& b) {
       return a.highest != b.highest ? a.highest > b.highest : seen[a.slot].record.id < seen[b.slot].record.id;
     });
     if (!list.empty()) cell.far = code_above(tile, list.front().highest);
@@ -297,7 +298,7 @@ class Builder {
     }
     if (references > 0xffffffffu || cells > 0xffffffffu)
       throw Error(ErrorCode::kLimit, "coverage", "more than 2^32 cells or references");
-    std::ranges::fill(number, kNoTriangle);
+    std::fill(number.begin(), number.end(), kNoTriangle);
     grid_.allocate(triangles, cells + 1, references);
     uint32_t tile = 0, cell_number = 0, reference_number = 0, known_number = 0;
     for (Row& row : rows) {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
+#include <span>
 
 #include "trace/coverage_grid.h"
 
@@ -51,7 +52,7 @@ MeshNeighbours find_neighbours(const TriangleMesh& mesh) {
   MeshNeighbours neighbours(mesh.triangle_count(), {kNoNeighbour, kNoNeighbour, kNoNeighbour});
   for (size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
     const std::span<Edge> fan = std::span(edges).subspan(begin[vertex], begin[vertex + 1] - begin[vertex]);
-    std::ranges::sort(fan, [](const Edge& a, const Edge& b) {
+    std::sort(fan.begin(), fan.end(), [](const Edge& a, const Edge& b) {
       return a.other != b.other         ? a.other < b.other
              : a.triangle != b.triangle ? a.triangle < b.triangle
                                         : a.number < b.number;
