@@ -22,8 +22,8 @@ struct TreePrices {
            confirmation * static_cast<double>(c.triangle_tests);
   }
 };
-constexpr TreePrices kWidePrices{15, 20, 28, 25}, kColumnPrices{45, 25, 30, 60}, kConePrices{80, 28, 50, 60};
-constexpr double kWalk = 120;  // a local search: finding the area, and how far its region reaches
+constexpr TreePrices kWidePrices{15, 20, 28, 25}, kColumnPrices{35, 22, 24, 110}, kConePrices{55, 24, 38, 110};
+constexpr double kWalk = 180;  // a local search: finding the area, and how far its region reaches
 constexpr double kCell = 27, kCellTest = 11.5,
                  kCellConfirmation = 75;  // a ray, a triangle of its cell, an intersection
 constexpr double kFarther = 5;            // a ray waits so much longer for a grid of twice the size, from a megabyte on
