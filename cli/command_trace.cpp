@@ -60,6 +60,7 @@ AcceleratorOptions accelerator_options(const Options& options) {
   if (options.traversal != "wide" && options.traversal != "binary")
     fail_usage("--traversal", "unknown form '" + options.traversal + "'", "Known: wide, binary");
   result.traversal = options.traversal == "wide" ? Traversal::kWide : Traversal::kBinary;
+  result.routing = Routing::kAreas;  // whoever names a recipe wants to see its trees searched
   result.threads = options.common.thread_count();
   result.samples = [](const InfluenceArea* area) { return area ? sample_rays(*area, 1) : std::vector<Ray>{}; };
   return result;

@@ -38,6 +38,13 @@ enum class Traversal {
 enum class LocalSpace {
   kWorld,  // the world's axes, as in the paper
   kRay,    // the area's ray space, besides: rays that a frame serves take the tree there
+  kNone,   // no local trees: coverage answers rays along an area, the global tree all others
+};
+
+/// Who answers a ray for which an area has structures of its own. Answers are the same.
+enum class Routing {
+  kCheapest,  // of coverage, local tree and global tree the one that sample rays of the area cost least, predicted
+  kAreas,     // the area's structures, whatever they cost
 };
 
 struct AcceleratorOptions {
@@ -47,6 +54,7 @@ struct AcceleratorOptions {
   bool reinsert = false;                            // improve the global tree by reinsertion, under its own measure
   Traversal traversal = Traversal::kWide;
   LocalSpace space = LocalSpace::kWorld;
+  Routing routing = Routing::kCheapest;  // under Traversal::kBinary always kAreas
   std::optional<FrameKind> frame;  // of areas that it suits; the others, and without one: the cheapest by prediction
   std::optional<Isa> isa;          // of wide trees; default_isa() without one
   /// Of each area, over all triangles that its rays can meet: answers batches of rays that share its direction or its
@@ -55,7 +63,7 @@ struct AcceleratorOptions {
   TopLevelOptions top_level;
   Registry registry = default_registry();
   MembershipRule membership;  // empty: overlaps(region, a, b, c)
-  SampleSource samples;       // empty: none
+  SampleSource samples;       // empty: none; an area's also decide about its routes
   unsigned threads = 0;       // of the build; 0 = all; nothing depends on it
   /// Called now and then, never by two threads at once, with the finished share of the build in [0, 1], not descending.
   /// false cancels: Error kCancelled.
@@ -69,7 +77,7 @@ struct LocalTree {
   BuildLog log;
   double predicted_cost = 0;
   RayMeasure measure = {};                               // the tree's own; decides how its wide form is collapsed
-  std::optional<FrameTree> in_ray_space = std::nullopt;  // LocalSpace::kRay
+  std::optional<FrameTree> in_ray_space = std::nullopt;  // LocalSpace::kRay, where some ray is sent there
   double build_seconds = 0;
 };
 
@@ -100,6 +108,7 @@ struct AreaReport {
   double build_seconds = 0;                             // of everything that the area has
   size_t memory_bytes = 0;                              // ... likewise
   std::string structures;                               // e.g. "coverage, tree in ray space (shear_y), tree"
+  std::string routes;                                   // who answers which rays, and at what predicted cost
   double area_nanoseconds = 0, global_nanoseconds = 0;  // a ray through this accelerator, and through its global tree
   /// Rays after which the area's structures have paid for their build; infinity where they save nothing.
   double break_even_rays = 0;
@@ -118,7 +127,9 @@ std::string to_text(const Explanation& explanation);
 /// tree.
 ///
 /// A ray along an area that its coverage can answer is answered there. Another is answered by the local tree of the
-/// area that serves it at the lowest predicted cost. A local hit counts only at or before the exit from that area's
+/// area that serves it at the lowest predicted cost. Under Routing::kCheapest both only where sample rays were cheaper
+/// that way than through the global tree, which answers all others at once: local trees that no ray is sent to keep
+/// their binary form alone. A local hit counts only at or before the exit from that area's
 /// region; otherwise the search goes on in the next area that holds the exit point and serves the ray there, at last in
 /// the global tree. Results equal the brute-force oracle's, bit for bit. Rays with tmin < 0 go straight to the global
 /// tree; invalid rays are misses and are counted.

@@ -16,7 +16,7 @@
 namespace raygrain {
 
 struct CoverageOptions {
-  float cells_per_triangle = 0.25f;          // of each tile, up to a factor of four; > 0
+  float cells_per_triangle = 0.25f;          // of each tile; > 0
   uint32_t triangles_per_tile = 256;         // on average; >= 1
   std::optional<Isa> isa = std::nullopt;     // default_isa() without one
   std::optional<bool> sorts = std::nullopt;  // the rays of batches by tile; without: where it was measured to pay
@@ -48,6 +48,10 @@ class Coverage {
 
   /// Throws Error: kBadArea for a bad area, kUsage for options out of range or an instruction set that this CPU lacks.
   Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea& area, const CoverageOptions& options = {});
+
+  /// One for each area, over the same mesh, built side by side: what they share is found once. Same errors.
+  static std::vector<Coverage> of_areas(std::shared_ptr<const TriangleMesh> mesh, std::span<const InfluenceArea> areas,
+                                        const CoverageOptions& options = {});
 
   /// False where the area cannot be covered (triangles between the eye and the near plane, large triangles in many
   /// layers, or none at all): no ray is answered then.
@@ -97,6 +101,9 @@ class Coverage {
 
  private:
   struct Data;
+  struct Shared;
+  Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea& area, const CoverageOptions& options,
+           const Shared* shared);
   std::shared_ptr<const Data> data_;
 };
 

@@ -12,7 +12,7 @@
 
 #include "accel/accelerator_parts.h"
 #include "accel/build_trees.h"
-#include "accel/foreign.h"
+#include "accel/route_costs.h"
 #include "accel/search.h"
 #include "base/parallel.h"
 #include "base/sizes.h"
@@ -107,6 +107,18 @@ void for_chunks(size_t rays, unsigned threads, AcceleratorCounters* counters, co
   });
 }
 
+/// Rays along an area that its coverage answers, whatever region they are in.
+std::optional<Hit> nearest_covered(const Route& route, const Ray& ray) {
+  for (const Coverage& coverage : route.asked)
+    if (const auto hit = coverage.intersect(ray)) return hit;
+  return {};
+}
+std::optional<bool> any_covered(const Route& route, const Ray& ray) {
+  for (const Coverage& coverage : route.asked)
+    if (const auto hit = coverage.occluded(ray)) return hit;
+  return {};
+}
+
 /// Are all hits of the ray that can be nearer than `best` known, when those with t <= exit are?
 bool is_final(const Hit& best, const Ray& ray, float exit) {
   return std::min(best.t, ray.tmax) <= exit;
@@ -122,10 +134,14 @@ Accelerator::Accelerator(TriangleMesh mesh, std::vector<InfluenceArea> areas, co
   auto shared = std::make_shared<const TriangleMesh>(std::move(mesh));
   BuiltTrees trees = build_trees(*shared, areas, options);
   AreaTable table = make_area_table(trees.locals, options.top_level);
+  std::vector<AreaGeometry> geometries(areas.begin(), areas.end());
   std::vector<Coverage> coverages = build_coverages(shared, areas, options);
-  parts_ = std::make_shared<const Parts>(Parts{std::move(shared), std::move(trees.locals),
-                                               std::move(trees.local_searches), std::move(*trees.global),
-                                               std::move(table), options.traversal, std::move(coverages)});
+  auto parts = std::make_shared<Parts>(
+      Parts{std::move(shared), std::move(trees.locals), std::move(trees.local_searches), std::move(*trees.global),
+            std::move(table), options.traversal, std::move(geometries), std::move(coverages)});
+  const bool by_cost = options.routing == Routing::kCheapest && options.traversal == Traversal::kWide;
+  parts->choose_routes(by_cost, options.samples, options.isa.value_or(default_isa()));
+  parts_ = std::move(parts);
 }
 
 Accelerator::Accelerator(std::shared_ptr<const TriangleMesh> mesh, std::vector<LocalTree> locals,
@@ -135,28 +151,41 @@ Accelerator::Accelerator(std::shared_ptr<const TriangleMesh> mesh, std::vector<L
   std::vector<SearchTree> searches = make_searches(*mesh, locals, traversal);
   SearchTree search = make_search_tree(*mesh, std::move(global), {}, traversal);
   AreaTable table = make_area_table(locals, top_level);
-  parts_ = std::make_shared<const Parts>(
+  auto parts = std::make_shared<Parts>(
       Parts{std::move(mesh), std::move(locals), std::move(searches), std::move(search), std::move(table), traversal});
+  parts->choose_routes(false, {}, default_isa());
+  parts_ = std::move(parts);
 }
 
 Accelerator Accelerator::with_local_trees(std::vector<LocalTree> locals, const TopLevelOptions& top_level) const {
   validate_locals(*parts_->mesh, locals);
   std::vector<SearchTree> searches = make_searches(*parts_->mesh, locals, parts_->traversal);
   AreaTable table = make_area_table(locals, top_level);
-  return Accelerator(std::make_shared<const Parts>(Parts{parts_->mesh, std::move(locals), std::move(searches),
-                                                         parts_->global, std::move(table), parts_->traversal}));
+  auto parts = std::make_shared<Parts>(
+      Parts{parts_->mesh, std::move(locals), std::move(searches), parts_->global, std::move(table), parts_->traversal});
+  parts->choose_routes(false, {}, default_isa());
+  return Accelerator(std::move(parts));
 }
 
-std::optional<Hit> Accelerator::Parts::nearest_covered(const Ray& ray) const {
-  for (const Coverage& coverage : coverages)
-    if (const auto hit = coverage.intersect(ray)) return hit;
-  return {};
-}
-
-std::optional<bool> Accelerator::Parts::any_covered(const Ray& ray) const {
-  for (const Coverage& coverage : coverages)
-    if (const auto hit = coverage.occluded(ray)) return hit;
-  return {};
+void Accelerator::Parts::choose_routes(bool by_cost, const SampleSource& samples, Isa isa) {
+  if (geometries.empty()) geometries = areas.geometries;
+  const auto trace = [this](bool is_any, const Ray& ray, const Route& route, AcceleratorCounters& counters) {
+    if (is_any)
+      any(ray, route, &counters);
+    else
+      nearest(ray, route, &counters);
+  };
+  if (by_cost) costs = predict_costs({*mesh, geometries, coverages, !locals.empty(), trace}, samples);
+  many_share = share_of_many(isa, global.wide_bytes());
+  routes = raygrain::choose_routes(geometries, coverages, !locals.empty(), costs, many_share);
+  for (size_t i = 0; i < locals.size(); ++i) {
+    const auto searched = [i](const Route& route) { return route.searches[i] != 0; };
+    if (searched(routes.any) || searched(routes.nearest) || searched(routes.any_of_many) ||
+        searched(routes.nearest_of_many))
+      continue;
+    searches[i].drop_fast_forms();
+    locals[i].in_ray_space.reset();
+  }
 }
 
 void Accelerator::Parts::count_use(uint32_t area, const Ray& ray, AcceleratorCounters* counters) const {
@@ -167,67 +196,88 @@ void Accelerator::Parts::count_use(uint32_t area, const Ray& ray, AcceleratorCou
   counters->cones += use == FrameUse::kCone;
 }
 
-Hit Accelerator::Parts::nearest(const Ray& ray, AcceleratorCounters* counters) const {
+Hit Accelerator::Parts::nearest(const Ray& ray, const Route& route, AcceleratorCounters* counters) const {
   if (counters != nullptr) ++counters->rays;
   if (!is_valid(ray)) {
     if (counters != nullptr) ++counters->invalid_rays;
     return {};
   }
-  if (const auto hit = nearest_covered(ray)) {
+  if (const auto hit = nearest_covered(route, ray)) {
     if (counters != nullptr) ++counters->covered;
     return *hit;
   }
   Hit best;
-  AreaWalk walk(areas, ray, counters);
-  while (const auto stage = walk.next()) {
-    count_use(stage->area, ray, counters);
-    best = searches[stage->area].intersect(ray, best, walk.search_options(), local_counters(counters));
-    if (!is_final(best, ray, stage->exit)) continue;
-    if (counters != nullptr && is_hit(best)) ++counters->local_hits;
-    return best;
+  SearchOptions options;
+  if (route.searches_some) {
+    AreaWalk walk(areas, ray, route.searches, counters);
+    while (const auto stage = walk.next()) {
+      count_use(stage->area, ray, counters);
+      best = searches[stage->area].intersect(ray, best, walk.search_options(), local_counters(counters));
+      if (!is_final(best, ray, stage->exit)) continue;
+      if (counters != nullptr && is_hit(best)) ++counters->local_hits;
+      return best;
+    }
+    options = walk.search_options();
   }
   if (counters != nullptr) ++counters->global_searches;
-  return global.intersect(ray, best, walk.search_options(), global_counters(counters));
+  return global.intersect(ray, best, options, global_counters(counters));
 }
 
-bool Accelerator::Parts::any(const Ray& ray, AcceleratorCounters* counters) const {
+bool Accelerator::Parts::any(const Ray& ray, const Route& route, AcceleratorCounters* counters) const {
   if (counters != nullptr) ++counters->rays;
   if (!is_valid(ray)) {
     if (counters != nullptr) ++counters->invalid_rays;
     return false;
   }
-  if (const auto hit = any_covered(ray)) {
+  if (const auto hit = any_covered(route, ray)) {
     if (counters != nullptr) ++counters->covered;
     return *hit;
   }
-  AreaWalk walk(areas, ray, counters);
-  while (const auto stage = walk.next()) {
-    count_use(stage->area, ray, counters);
-    if (searches[stage->area].occluded(ray, walk.search_options(), local_counters(counters))) {
-      if (counters != nullptr) ++counters->local_hits;  // wherever it is: any hit answers
-      return true;
+  SearchOptions options;
+  if (route.searches_some) {
+    AreaWalk walk(areas, ray, route.searches, counters);
+    while (const auto stage = walk.next()) {
+      count_use(stage->area, ray, counters);
+      if (searches[stage->area].occluded(ray, walk.search_options(), local_counters(counters))) {
+        if (counters != nullptr) ++counters->local_hits;  // wherever it is: any hit answers
+        return true;
+      }
+      if (is_final({}, ray, stage->exit)) return false;
     }
-    if (is_final({}, ray, stage->exit)) return false;
+    options = walk.search_options();
   }
   if (counters != nullptr) ++counters->global_searches;
-  return global.occluded(ray, walk.search_options(), global_counters(counters));
+  return global.occluded(ray, options, global_counters(counters));
 }
 
 Hit Accelerator::intersect(const Ray& ray, AcceleratorCounters* counters) const {
-  if (counters == nullptr && parts_->foreign.is_foreign(ray)) return parts_->global.intersect(ray, {}, {}, nullptr);
-  return parts_->nearest(ray, counters);
+  const Route& route = parts_->routes.nearest;
+  if (counters == nullptr) {
+    if (route.foreign.is_foreign(ray)) return parts_->global.intersect(ray, {}, {}, nullptr);
+    if (const auto hit = nearest_covered(route, ray)) return *hit;
+  }
+  return parts_->nearest(ray, route, counters);
 }
 
 bool Accelerator::occluded(const Ray& ray, AcceleratorCounters* counters) const {
-  if (counters == nullptr && parts_->foreign.is_foreign(ray)) return parts_->global.occluded(ray, {}, nullptr);
-  return parts_->any(ray, counters);
+  const Route& route = parts_->routes.any;
+  if (counters == nullptr) {
+    if (route.foreign.is_foreign(ray)) return parts_->global.occluded(ray, {}, nullptr);
+    if (const auto hit = any_covered(route, ray)) return *hit;
+  }
+  return parts_->any(ray, route, counters);
 }
 
 template <class Answer, class One, class Many>
-void Accelerator::Parts::answer_array(std::span<const Ray> rays, std::span<Answer> answers, unsigned threads,
-                                      const One& one, const Many& many) const {
-  constexpr size_t kChunk = 1024;
+void Accelerator::Parts::answer_array(const ForeignFilter& foreign, std::span<const Ray> rays,
+                                      std::span<Answer> answers, unsigned threads, const One& one,
+                                      const Many& many) const {
+  constexpr size_t kChunk = 1024, kProbe = 31;
+  constexpr size_t kFew = kChunk / 16;  // so few others are not worth a selection
   parallel_for(rays.size(), kChunk, threads, [&](size_t begin, size_t end) {
+    bool is_mixed = false;
+    for (size_t i = begin; i < end; i += kProbe) is_mixed |= !foreign.is_foreign(rays[i]);
+    if (!is_mixed) return many(rays.subspan(begin, end - begin), answers.subspan(begin, end - begin));
     std::array<uint32_t, kChunk> numbers;
     size_t foreigners = 0;
     for (size_t i = begin; i < end; ++i) {
@@ -236,7 +286,7 @@ void Accelerator::Parts::answer_array(std::span<const Ray> rays, std::span<Answe
     }
     const std::span<const Ray> part = rays.subspan(begin, end - begin);
     const std::span<Answer> room = answers.subspan(begin, end - begin);
-    if (foreigners == part.size()) return many(part, room);
+    if (part.size() - foreigners <= std::min(kFew, part.size() / 16)) return many(part, room);
     std::vector<Ray> gathered;
     gathered.reserve(foreigners);
     size_t next = 0;
@@ -258,12 +308,13 @@ void Accelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits, unsi
                             AcceleratorCounters* counters) const {
   check_sizes("Accelerator", rays.size(), hits.size());
   const std::optional<WideBvh>& global = parts_->global.wide();
+  const Route& route = parts_->routes.nearest_of_many;
   if (counters != nullptr || !global)
     return for_chunks(rays.size(), threads, counters,
-                      [&](size_t i, AcceleratorCounters* count) { hits[i] = parts_->nearest(rays[i], count); });
-  if (parts_->locals.empty()) return global->intersect(rays, hits, threads);
+                      [&](size_t i, AcceleratorCounters* count) { hits[i] = parts_->nearest(rays[i], route, count); });
+  if (route.foreign.is_trivial()) return global->intersect(rays, hits, threads);
   parts_->answer_array(
-      rays, hits, threads, [&](const Ray& ray) { return parts_->nearest(ray, nullptr); },
+      route.foreign, rays, hits, threads, [&](const Ray& ray) { return parts_->nearest(ray, route, nullptr); },
       [&](std::span<const Ray> some, std::span<Hit> found) { global->intersect(some, found); });
 }
 
@@ -271,12 +322,15 @@ void Accelerator::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, 
                            AcceleratorCounters* counters) const {
   check_sizes("Accelerator", rays.size(), flags.size());
   const std::optional<WideBvh>& global = parts_->global.wide();
+  const Route& route = parts_->routes.any_of_many;
   if (counters != nullptr || !global)
-    return for_chunks(rays.size(), threads, counters,
-                      [&](size_t i, AcceleratorCounters* count) { flags[i] = parts_->any(rays[i], count) ? 1 : 0; });
-  if (parts_->locals.empty()) return global->occluded(rays, flags, threads);
+    return for_chunks(rays.size(), threads, counters, [&](size_t i, AcceleratorCounters* count) {
+      flags[i] = parts_->any(rays[i], route, count) ? 1 : 0;
+    });
+  if (route.foreign.is_trivial()) return global->occluded(rays, flags, threads);
   parts_->answer_array(
-      rays, flags, threads, [&](const Ray& ray) { return static_cast<uint8_t>(parts_->any(ray, nullptr)); },
+      route.foreign, rays, flags, threads,
+      [&](const Ray& ray) { return static_cast<uint8_t>(parts_->any(ray, route, nullptr)); },
       [&](std::span<const Ray> some, std::span<uint8_t> found) { global->occluded(some, found); });
 }
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "accel/foreign.h"
+#include "accel/routes.h"
 #include "accel/search.h"
 #include "accel/search_tree.h"
 
@@ -13,26 +13,32 @@ namespace raygrain {
 
 struct Accelerator::Parts {
   std::shared_ptr<const TriangleMesh> mesh;
-  std::vector<LocalTree> locals;
+  std::vector<LocalTree> locals;     // parallel to the areas, or none
   std::vector<SearchTree> searches;  // parallel to `locals`
   SearchTree global;
-  AreaTable areas;
+  AreaTable areas;  // of `locals`
   Traversal traversal = Traversal::kWide;
-  std::vector<Coverage> coverages = {};  // parallel to `locals`, or empty
-  ForeignFilter foreign = ForeignFilter(areas.geometries);
+  std::vector<AreaGeometry> geometries = {};  // of all areas
+  std::vector<Coverage> coverages = {};       // parallel to them, or empty
+  std::vector<AreaCosts> costs = {};          // ... likewise
+  Routes routes = {};
+  double many_share = 1;  // of what the global tree's costs are, for a ray of many
 
-  /// Rays along an area that its coverage answers, whatever region they are in.
-  std::optional<Hit> nearest_covered(const Ray& ray) const;
-  std::optional<bool> any_covered(const Ray& ray) const;
+  /// Chooses the routes: by cost, or whatever there is.
+  void choose_routes(bool by_cost, const SampleSource& samples, Isa isa);
+
+  /// Adds what there is of an area's local tree.
+  void describe_local(size_t area, AreaReport& report) const;
+
   void count_use(uint32_t area, const Ray& ray, AcceleratorCounters* counters) const;
 
-  Hit nearest(const Ray& ray, AcceleratorCounters* counters) const;
-  bool any(const Ray& ray, AcceleratorCounters* counters) const;
+  Hit nearest(const Ray& ray, const Route& route, AcceleratorCounters* counters) const;
+  bool any(const Ray& ray, const Route& route, AcceleratorCounters* counters) const;
 
   /// Rays that are no area's go to the global tree together, the others one by one.
   template <class Answer, class One, class Many>
-  void answer_array(std::span<const Ray> rays, std::span<Answer> answers, unsigned threads, const One& one,
-                    const Many& many) const;
+  void answer_array(const ForeignFilter& foreign, std::span<const Ray> rays, std::span<Answer> answers,
+                    unsigned threads, const One& one, const Many& many) const;
 };
 
 }  // namespace raygrain

@@ -52,11 +52,7 @@ std::vector<Coverage> build_coverages(const std::shared_ptr<const TriangleMesh>&
   CoverageOptions coverage = *options.coverage;
   coverage.threads = options.threads;
   if (!coverage.isa) coverage.isa = options.isa;
-  std::vector<Coverage> coverages(areas.size());
-  parallel_for(areas.size(), 1, options.threads, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) coverages[i] = Coverage(mesh, areas[i], coverage);
-  });
-  return coverages;
+  return Coverage::of_areas(mesh, areas, coverage);
 }
 
 /// One task per tree, the global one first because it is the longest.
@@ -65,10 +61,11 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
   const auto samples = [&](const InfluenceArea* area) {
     return options.samples ? options.samples(area) : std::vector<Ray>{};
   };
-  JointProgress progress(options.progress, areas.size() + 1);
+  const size_t locals = options.space == LocalSpace::kNone ? 0 : areas.size();
+  JointProgress progress(options.progress, locals + 1);
   BuiltTrees trees;
-  trees.locals.resize(areas.size());
-  std::vector<std::optional<SearchTree>> searches(areas.size());
+  trees.locals.resize(locals);
+  std::vector<std::optional<SearchTree>> searches(locals);
   const bool in_ray_space = options.space == LocalSpace::kRay && options.traversal == Traversal::kWide;
   const auto corners = in_ray_space ? std::make_shared<const TriangleCorners>(mesh) : nullptr;
   const auto build_local = [&](size_t i) {
@@ -97,7 +94,7 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
     }
     progress.reach(task, 1);
   };
-  parallel_for(areas.size() + 1, 1, options.threads, [&](size_t begin, size_t end) {
+  parallel_for(locals + 1, 1, options.threads, [&](size_t begin, size_t end) {
     for (size_t task = begin; task < end; ++task) build(task);
   });
   for (std::optional<SearchTree>& search : searches) trees.local_searches.push_back(std::move(*search));

@@ -1,6 +1,8 @@
-// Rays that surely are no area's own, told quickly: they go to the global tree without further questions.
+// Rays that surely concern no structure of any area, told quickly: they go to the global tree without further
+// questions.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -8,36 +10,46 @@
 
 namespace raygrain {
 
-/// Tells by the direction alone. Whoever passes may still be foreign; nobody's answer depends on it.
+/// Which of an area's rays matter.
+enum class Reach : uint8_t {
+  kNone,       // none: the global tree answers all of them
+  kAxis,       // those along its direction or through its point, up to rounding
+  kTolerance,  // those within its tolerance
+};
+
+/// Tells by the line alone. Whoever passes may still be foreign; nobody's answer depends on it.
 class ForeignFilter {
  public:
   ForeignFilter() = default;
-  explicit ForeignFilter(std::span<const AreaGeometry> areas);
+  /// `reaches` are parallel to `areas`.
+  ForeignFilter(std::span<const AreaGeometry> areas, std::span<const Reach> reaches);
 
-  /// No area has this direction, up to its tolerance. False for invalid rays.
+  /// Every ray is.
+  bool is_trivial() const { return axes_.empty() && eyes_.empty(); }
+
+  /// The ray concerns no area. False for invalid rays, unless all are foreign.
   bool is_foreign(const Ray& ray) const {
     const float size = dot(ray.direction, ray.direction);
     for (const Axis& axis : axes_) {
-      const float along = dot(axis.direction, ray.direction);
-      if (!(along * along < axis.least_square * size)) return false;
+      const Vec3 beside = cross(axis.direction, ray.direction);
+      if (!(dot(beside, beside) > axis.greatest_square * size)) return false;
     }
     for (const Eye& eye : eyes_) {
-      const Vec3 away = ray.origin - eye.place;
-      const float along = dot(away, ray.direction);
-      if (!(along * along < eye.least_square * size * dot(away, away))) return false;
+      const Vec3 away = ray.origin - eye.place, beside = cross(away, ray.direction);
+      if (!(dot(beside, beside) > eye.greatest_square * size * dot(away, away))) return false;
     }
     return true;
   }
 
  private:
-  // Squares of the least |cos| of an affine direction, less by more than all rounding.
+  // Squares of the greatest |sin| of an angle that matters, greater by more than all rounding.
   struct Axis {
     Vec3 direction;
-    float least_square;
+    float greatest_square;
   };
   struct Eye {
     Vec3 place;
-    float least_square;
+    float greatest_square;
   };
   std::vector<Axis> axes_;
   std::vector<Eye> eyes_;  // each once

@@ -21,8 +21,9 @@ AxisTest::AxisTest(const AreaGeometry& area)
   least_ = least * least * (1 - 0x1p-40);
 }
 
-AreaWalk::AreaWalk(const AreaTable& areas, const Ray& ray, AcceleratorCounters* counters)
-    : areas_(areas), ray_(ray), counters_(counters) {}
+AreaWalk::AreaWalk(const AreaTable& areas, const Ray& ray, std::span<const uint8_t> allowed,
+                   AcceleratorCounters* counters)
+    : areas_(areas), ray_(ray), allowed_(allowed), counters_(counters) {}
 
 std::optional<AreaWalk::Stage> AreaWalk::next() {
   if (areas_.geometries.empty()) return {};
@@ -59,7 +60,7 @@ bool AreaWalk::was_tried(uint32_t area) const {
 std::optional<uint32_t> AreaWalk::cheapest_serving(const Ray& from_here) {
   std::optional<uint32_t> best;
   for (const uint32_t area : areas_.top_level.regions_at(from_here.origin)) {
-    if (was_tried(area)) continue;
+    if (allowed_[area] == 0 || was_tried(area)) continue;
     count(&AcceleratorCounters::areas_tested);
     if (!areas_.geometries[area].serves(from_here)) continue;
     count(&AcceleratorCounters::areas_serving);

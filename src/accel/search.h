@@ -54,8 +54,8 @@ class AreaWalk {
     float exit;  // hits with t <= exit are known after this area
   };
 
-  /// Null counters: nothing is counted.
-  AreaWalk(const AreaTable& areas, const Ray& ray, AcceleratorCounters* counters);
+  /// Among the areas that `allowed` says (one for each). Null counters: nothing is counted.
+  AreaWalk(const AreaTable& areas, const Ray& ray, std::span<const uint8_t> allowed, AcceleratorCounters* counters);
 
   /// The next area to search, or nothing: the global tree must answer.
   std::optional<Stage> next();
@@ -77,6 +77,7 @@ class AreaWalk {
 
   const AreaTable& areas_;
   const Ray& ray_;
+  std::span<const uint8_t> allowed_;
   AcceleratorCounters* counters_;
   SearchOptions search_;
   float from_ = 0;  // hits with t <= from_ are known; 0: none needs to be

@@ -17,6 +17,8 @@ class SearchTree {
   /// Rays that fit this tree take it.
   void add_ray_space(FrameTree tree) { frame_ = std::move(tree); }
   const std::optional<FrameTree>& in_ray_space() const { return frame_; }
+  /// Leaves the binary tree alone.
+  void drop_fast_forms() { wide_.reset(), frame_.reset(); }
 
   /// Null counters: nothing is counted.
   Hit intersect(const Ray& ray, const Hit& known, const SearchOptions& options, TraceCounters* counters) const {

@@ -19,6 +19,7 @@ namespace raygrain {
 struct Coverage::Data {
   CoverageGrid grid;
   Isa isa = Isa::kScalar;
+  const CoverageKernels* kernels = &coverage_kernels(Isa::kScalar);
   std::optional<bool> sorts;
   double seconds = 0;
 };
@@ -33,45 +34,48 @@ constexpr size_t kMostRaysPerTask = size_t{1} << 16;  // so many fit a cache wit
 constexpr size_t kLeastRaysPerTask = 4096;
 
 size_t bytes_of(const CoverageGrid& grid) {
-  return grid.tiles.capacity() * sizeof(CoverageTile) + grid.cells.capacity() * sizeof(CoverageCell) +
-         grid.references.capacity() * sizeof(CoverageReference) + grid.triangles.capacity() * sizeof(CoverageTriangle) +
+  return grid.memory.size() + grid.tiles.capacity() * sizeof(CoverageTile) +
          grid.near_triangles.capacity() * sizeof(uint32_t);
-}
-
-/// +1 for directions against the light's, -1 for those along it, 0 for others.
-int sense_of(const CoverageGrid& grid, Vec3 direction) {
-  const Vec3d v = to_double(direction);
-  const Vec3d q{dot(grid.map.rows[0], v), dot(grid.map.rows[1], v), dot(grid.map.rows[2], v)};
-  const double along = std::abs(q.z);
-  if (!(along >= 0x1p-60 && along <= 0x1p60) || std::max(std::abs(q.x), std::abs(q.y)) > kMostSlope * along) return 0;
-  return q.z > 0 ? 1 : -1;
 }
 
 Vec3d turn(const ColumnMap& map, Vec3d v) {
   return {dot(map.rows[0], v), dot(map.rows[1], v), dot(map.rows[2], v)};
 }
 
+/// +1 for directions against the light's, -1 for those along it, 0 for others: from the direction in the map.
+int sense_of(Vec3d q) {
+  const double along = std::abs(q.z);
+  if (!(along >= 0x1p-60 && along <= 0x1p60) || std::max(std::abs(q.x), std::abs(q.y)) > kMostSlope * along) return 0;
+  return q.z > 0 ? 1 : -1;
+}
+int sense_of(const CoverageGrid& grid, Vec3 direction) {
+  return sense_of(turn(grid.map, to_double(direction)));
+}
+
 /// Parallel rays, in double precision: better than the errors that the grid allows for.
 bool column_along(const CoverageGrid& grid, const Ray& ray, int wanted, SingleColumn& column) {
-  if (sense_of(grid, ray.direction) != wanted) return false;
+  const Vec3d direction = turn(grid.map, to_double(ray.direction));
+  if (sense_of(direction) != wanted) return false;
   const Vec3d q = grid.map.turned(ray.origin);
-  const double along = turn(grid.map, to_double(ray.direction)).z;
   column = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z),
-            static_cast<float>(q.z + along * static_cast<double>(ray.tmax))};
+            static_cast<float>(q.z + direction.z * static_cast<double>(ray.tmax))};
   return column.s >= grid.s_lo && column.s <= grid.s_hi;
 }
 
 /// A ray whose line passes the eye and that ends there, up to rounding.
 bool column_to_eye(const CoverageGrid& grid, const Ray& ray, SingleColumn& column) {
-  const Vec3d to_eye = to_double(grid.map.center) - to_double(ray.origin), direction = to_double(ray.direction);
+  const Vec3d to_eye = to_double(grid.map.center) - to_double(ray.origin), q = turn(grid.map, -to_eye);
+  // Most of several frusta about one eye are done with here: the grid's own test of its window is no wider.
+  constexpr double kRoom = 1 + 0x1p-20;
+  const double x_most = kRoom * static_cast<double>(grid.x_hi), y_most = kRoom * static_cast<double>(grid.y_hi);
+  if (!(q.z > 0 && std::abs(q.x) <= x_most * q.z && std::abs(q.y) <= y_most * q.z)) return false;
+  const Vec3d direction = to_double(ray.direction);
   const double distance = dot(to_eye, to_eye), size = dot(direction, direction), along = dot(to_eye, direction);
   if (!(size >= 0x1p-120 && size <= 0x1p120 && distance <= 0x1p120 && along > 0)) return false;
   const Vec3d beside = cross(to_eye, direction);
   if (!(dot(beside, beside) <= 0.99 * kMostOffset * kMostOffset * distance * size)) return false;
   const double end = static_cast<double>(ray.tmax) * size;  // against `along`, where the ray passes the eye
   if (!(end >= along * (1 - kMostOffset) && end <= along * (1 + kMostOffset))) return false;
-  const Vec3d q = turn(grid.map, -to_eye);
-  if (!(q.z > 0)) return false;
   const double s = 1 / q.z;
   column = {static_cast<float>(q.x * s), static_cast<float>(q.y * s), static_cast<float>(s), kInf};
   return column.s >= grid.s_lo && column.s <= grid.s_hi;
@@ -136,8 +140,15 @@ void CoverageCounters::add(const CoverageCounters& other) {
 
 Coverage::Coverage() : data_(std::make_shared<const Data>()) {}
 
-Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea& area,
-                   const CoverageOptions& options) {
+struct Coverage::Shared {
+  MeshNeighbours neighbours;
+};
+
+Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea& area, const CoverageOptions& options)
+    : Coverage(std::move(mesh), area, options, nullptr) {}
+
+Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea& area, const CoverageOptions& options,
+                   const Shared* shared) {
   if (mesh == nullptr) throw Error(ErrorCode::kUsage, "mesh", "is missing");
   if (!(options.cells_per_triangle > 0) || options.triangles_per_tile == 0)
     throw Error(ErrorCode::kUsage, "CoverageOptions", "densities must be positive");
@@ -146,9 +157,23 @@ Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea
     throw Error(ErrorCode::kUsage, "CoverageOptions::isa", "this CPU does not offer '" + std::string(name(isa)) + "'");
   const Timer timer;
   const CoverageDensity density{options.cells_per_triangle, static_cast<double>(options.triangles_per_tile)};
-  Data data{build_coverage(std::move(mesh), AreaGeometry(area), density, options.threads), isa, options.sorts, 0};
+  Data data{build_coverage(std::move(mesh), AreaGeometry(area), density,
+                           shared != nullptr ? &shared->neighbours : nullptr, options.threads),
+            isa, &coverage_kernels(isa), options.sorts, 0};
   data.seconds = timer.seconds();
   data_ = std::make_shared<const Data>(std::move(data));
+}
+
+std::vector<Coverage> Coverage::of_areas(std::shared_ptr<const TriangleMesh> mesh, std::span<const InfluenceArea> areas,
+                                         const CoverageOptions& options) {
+  if (mesh == nullptr) throw Error(ErrorCode::kUsage, "mesh", "is missing");
+  std::vector<Coverage> coverages(areas.size());
+  if (areas.empty()) return coverages;
+  const Shared shared{find_neighbours(*mesh)};
+  parallel_for(areas.size(), 1, options.threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) coverages[i] = Coverage(mesh, areas[i], options, &shared);
+  });
+  return coverages;
 }
 
 int Coverage::sense(Vec3 direction) const {
@@ -162,9 +187,9 @@ bool Coverage::has_eye(Vec3 point) const {
 std::optional<bool> Coverage::occluded(const Ray& ray) const {
   const CoverageGrid& grid = data_->grid;
   SingleColumn column{};
-  if (!is_useful() || ray.tmin != 0) return {};
+  if (!is_useful() || ray.tmin != 0 || !(ray.tmax >= 0)) return {};
   if (!(grid.map.is_eye ? column_to_eye(grid, ray, column) : column_along(grid, ray, 1, column))) return {};
-  return coverage_kernels(data_->isa).any_of_one(grid, column, ray);
+  return data_->kernels->any_of_one(grid, column, ray);
 }
 
 std::optional<Hit> Coverage::intersect(const Ray& ray) const {
@@ -172,7 +197,7 @@ std::optional<Hit> Coverage::intersect(const Ray& ray) const {
   SingleColumn column{};
   if (!is_useful() || ray.tmin != 0 || ray.tmax != kInf) return {};
   if (!(grid.map.is_eye ? column_from_eye(grid, ray, column) : column_along(grid, ray, -1, column))) return {};
-  return coverage_kernels(data_->isa).nearest_of_one(grid, column, ray);
+  return data_->kernels->nearest_of_one(grid, column, ray);
 }
 
 bool Coverage::is_useful() const {
@@ -187,7 +212,7 @@ void Coverage::occluded(std::span<const Vec3> origins, Vec3 direction, std::span
   if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != 1) return pass_on(origins.size(), subset, rest);
   in_parts(grid, data_->sorts, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
            threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
-             coverage_kernels(data_->isa).any(grid, batch, flags.data(), others, counts);
+             data_->kernels->any(grid, batch, flags.data(), others, counts);
            });
 }
 
@@ -199,7 +224,7 @@ void Coverage::occluded_towards(std::span<const Vec3> origins, Vec3 point, std::
   if (!is_useful() || !grid.map.is_eye || point != grid.map.center) return pass_on(origins.size(), subset, rest);
   in_parts(grid, data_->sorts, {ColumnRays::Kind::kTowards, point, origins.data()}, origins.size(), subset, rest,
            threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
-             coverage_kernels(data_->isa).any(grid, batch, flags.data(), others, counts);
+             data_->kernels->any(grid, batch, flags.data(), others, counts);
            });
 }
 
@@ -211,7 +236,7 @@ void Coverage::intersect(std::span<const Vec3> origins, Vec3 direction, std::spa
   if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != -1) return pass_on(origins.size(), subset, rest);
   in_parts(grid, data_->sorts, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
            threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
-             coverage_kernels(data_->isa).nearest(grid, batch, hits.data(), others, counts);
+             data_->kernels->nearest(grid, batch, hits.data(), others, counts);
            });
 }
 
@@ -223,7 +248,7 @@ void Coverage::intersect_from(Vec3 eye, std::span<const Vec3> directions, std::s
   if (!is_useful() || !grid.map.is_eye || eye != grid.map.center) return pass_on(directions.size(), subset, rest);
   in_parts(grid, data_->sorts, {ColumnRays::Kind::kFrom, eye, directions.data()}, directions.size(), subset, rest,
            threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
-             coverage_kernels(data_->isa).nearest(grid, batch, hits.data(), others, counts);
+             data_->kernels->nearest(grid, batch, hits.data(), others, counts);
            });
 }
 
@@ -235,7 +260,7 @@ std::vector<std::vector<uint32_t>> Coverage::divide(std::span<const Coverage* co
   std::vector<const CoverageGrid*> grids;
   for (const Coverage* coverage : coverages) grids.push_back(&coverage->data_->grid);
   const EyeGrids eye{grids.data(), static_cast<uint32_t>(grids.size())};
-  const CoverageKernels& table = coverage_kernels(coverages[0]->data_->isa);
+  const CoverageKernels& table = *coverages[0]->data_->kernels;
   std::vector<uint8_t> chosen(points.size());
   parallel_for(points.size(), kMostRaysPerTask, threads, [&](size_t begin, size_t end) {
     table.choose(eye, are_directions, points.data() + begin, end - begin, chosen.data() + begin);

@@ -5,10 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <new>
+#include <span>
 #include <vector>
 
 #include "raygrain/area.h"
 #include "raygrain/mesh.h"
+
+#include "trace/wide_tree.h"
 
 namespace raygrain {
 
@@ -65,11 +69,12 @@ struct CoverageCell {
   uint16_t cover = 0;  // a query with a lower code is hidden; 0: none is
   uint16_t far = 0;    // a query with a higher code is free
   uint32_t first = 0;  // of its references; they end where those of the next cell begin
+  uint32_t top = 0;    // the triangle of the first one, to be fetched before the reference is there
 };
 
 struct CoverageTile {
   uint32_t first_cell = 0;
-  uint32_t levels = 0;              // 2^levels x 2^levels cells
+  uint32_t across = 1;              // across x across cells
   float lowest = 0, per_depth = 1;  // codes per unit of depth
 };
 
@@ -92,20 +97,37 @@ struct CoverageGrid {
   float tiles_per_unit = 1;
   uint32_t tiles_x = 0, tiles_y = 0;
   std::vector<CoverageTile> tiles;
-  std::vector<CoverageCell> cells;  // and one more
-  std::vector<CoverageReference> references;
-  std::vector<CoverageTriangle> triangles;
+  LineMemory memory;  // of the following: together, so that large pages serve them
+  std::span<CoverageTriangle> triangles;
+  std::span<CoverageCell> cells;  // and one more
+  std::span<CoverageReference> references;
   std::vector<uint32_t> near_triangles;  // ids of those that all rays of an eye must ask
 
   bool is_useful() const { return !cells.empty(); }
+
+  void allocate(size_t triangle_count, size_t cell_count, size_t reference_count) {
+    const size_t cells_at = triangle_count * sizeof(CoverageTriangle);
+    const size_t references_at = cells_at + cell_count * sizeof(CoverageCell);
+    memory = LineMemory(references_at + reference_count * sizeof(CoverageReference));
+    triangles = {new (memory.data()) CoverageTriangle[triangle_count], triangle_count};
+    cells = {new (memory.data() + cells_at) CoverageCell[cell_count], cell_count};
+    references = {new (memory.data() + references_at) CoverageReference[reference_count], reference_count};
+  }
 };
 
 struct CoverageDensity {
   double cells_per_triangle, triangles_per_tile;
 };
 
-/// Useless (without cells) where nothing can be seen or too much is too near to an eye. Deterministic.
+/// Per triangle and edge (from corner i to corner i + 1): the one other triangle with the same two points at its ends,
+/// or kNoNeighbour where there is none or more than one.
+using MeshNeighbours = std::vector<std::array<uint32_t, 3>>;
+inline constexpr uint32_t kNoNeighbour = 0xffffffffu;
+MeshNeighbours find_neighbours(const TriangleMesh& mesh);
+
+/// Useless (without cells) where nothing can be seen or too much is too near to an eye. Deterministic. `neighbours` of
+/// the mesh where they are known, or null.
 CoverageGrid build_coverage(std::shared_ptr<const TriangleMesh> mesh, const AreaGeometry& area,
-                            const CoverageDensity& density, unsigned threads);
+                            const CoverageDensity& density, const MeshNeighbours* neighbours, unsigned threads);
 
 }  // namespace raygrain

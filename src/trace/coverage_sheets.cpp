@@ -1,61 +1,14 @@
 #include "trace/coverage_sheets.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <numeric>
 
 namespace raygrain {
 namespace {
 
 constexpr float kNone = -std::numeric_limits<float>::infinity();
 
-/// The first vertex at the same place, for each.
-std::vector<uint32_t> weld(const std::vector<Vec3>& vertices) {
-  std::vector<uint32_t> order(vertices.size()), welded(vertices.size());
-  std::iota(order.begin(), order.end(), 0u);
-  const auto less = [&](uint32_t i, uint32_t j) {
-    const Vec3 a = vertices[i], b = vertices[j];
-    if (a.x != b.x) return a.x < b.x;
-    if (a.y != b.y) return a.y < b.y;
-    return a.z != b.z ? a.z < b.z : i < j;
-  };
-  std::sort(order.begin(), order.end(), less);
-  for (size_t i = 0; i < order.size(); ++i)
-    welded[order[i]] = i > 0 && vertices[order[i]] == vertices[order[i - 1]] ? welded[order[i - 1]] : order[i];
-  return welded;
-}
-
 }  // namespace
-
-std::vector<std::array<uint32_t, 3>> find_neighbours(const TriangleMesh& mesh) {
-  struct Edge {
-    uint64_t ends;
-    uint32_t triangle, number;
-  };
-  const std::vector<uint32_t> welded = weld(mesh.vertices);
-  std::vector<Edge> edges;
-  edges.reserve(3 * mesh.triangle_count());
-  for (uint32_t t = 0; t < mesh.triangle_count(); ++t)
-    for (uint32_t i = 0; i < 3; ++i) {
-      const uint64_t a = welded[mesh.triangles[t][i]], b = welded[mesh.triangles[t][(i + 1) % 3]];
-      edges.push_back({std::min(a, b) << 32 | std::max(a, b), t, i});
-    }
-  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
-    return a.ends != b.ends           ? a.ends < b.ends
-           : a.triangle != b.triangle ? a.triangle < b.triangle
-                                      : a.number < b.number;
-  });
-  std::vector<std::array<uint32_t, 3>> neighbours(mesh.triangle_count(), {kNoNeighbour, kNoNeighbour, kNoNeighbour});
-  for (size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
-    while (end < edges.size() && edges[end].ends == edges[begin].ends) ++end;
-    if (end - begin != 2) continue;
-    const Edge &a = edges[begin], &b = edges[begin + 1];
-    neighbours[a.triangle][a.number] = b.triangle;
-    neighbours[b.triangle][b.number] = a.triangle;
-  }
-  return neighbours;
-}
 
 uint32_t SheetFinder::root(uint32_t i) {
   while (parts_[i].parent != i) i = parts_[i].parent = parts_[parts_[i].parent].parent;

@@ -1,4 +1,4 @@
-// Which triangles share which edges, and which depth several of them certainly cover together.
+// Which depth several triangles that share edges certainly cover together.
 #pragma once
 
 #include <array>
@@ -9,12 +9,6 @@
 #include "trace/coverage_triangle.h"
 
 namespace raygrain {
-
-inline constexpr uint32_t kNoNeighbour = 0xffffffffu;
-
-/// Per triangle and edge (from corner i to corner i + 1): the one other triangle with the same two points at its ends,
-/// or kNoNeighbour where there is none or more than one.
-std::vector<std::array<uint32_t, 3>> find_neighbours(const TriangleMesh& mesh);
 
 /// A triangle that a cell may meet, with its least and greatest depth there.
 struct InCell {
@@ -30,8 +24,8 @@ struct CellSquare {
 /// Finds connected parts of surfaces whose borders and folds stay outside a cell. Scratch space for one thread.
 class SheetFinder {
  public:
-  SheetFinder(std::span<const std::array<uint32_t, 3>> neighbours, size_t triangles)
-      : neighbours_(neighbours), slot_of_(triangles), seen_in_(triangles, 0) {}
+  explicit SheetFinder(const MeshNeighbours& neighbours)
+      : neighbours_(neighbours), slot_of_(neighbours.size()), seen_in_(neighbours.size(), 0) {}
 
   /// The greatest depth up to which the cell is covered: -infinity for none. `list` holds all triangles that the cell
   /// may meet.

@@ -138,7 +138,7 @@ void set_plane(const CoverageGrid& grid, const PlaneOfDepth& plane, SeenTriangle
 
 /// Lanes 0-2 of a triangle that is (nearly) a line to the light: a strip along it. Never sure.
 void set_strip(const CoverageGrid& grid, const PlaneOfDepth& plane, SeenTriangle& seen) {
-  const double length = std::hypot(plane.a, plane.b);
+  const double length = std::sqrt(plane.a * plane.a + plane.b * plane.b);
   if (!(length * 4 * grid.errors.greatest_xy > std::abs(plane.c))) return;
   const double a = plane.a / length, b = plane.b / length;
   const double middle = (plane.c + plane.ahead * (seen.s_lo + seen.s_hi) / 2) / length;
@@ -154,7 +154,7 @@ double length_of(Vec3d p) {
 bool set_edges(const CoverageGrid& grid, const Corners& corners, double turn, SeenTriangle& seen) {
   for (size_t i = 0; i < 3; ++i) {
     const Vec3d p = corners[i], q = corners[(i + 1) % 3], n = cross(p, q) * turn;
-    const double length = std::hypot(n.x, n.y);
+    const double length = std::sqrt(n.x * n.x + n.y * n.y);
     const double scale = std::max(length, std::abs(n.z) / (4 * grid.errors.greatest_xy));
     const double size = grid.map.is_eye ? length_of(p) * length_of(q) : grid.errors.greatest_xy;
     if (!(scale > 0x1p-26 * size)) return false;  // too short for its direction to be known well
@@ -191,7 +191,7 @@ Seen look_at(const CoverageGrid& grid, double near_z, uint32_t id, SeenTriangle&
   seen.record.id = id;
   PlaneOfDepth plane = plane_of(grid.map.is_eye, corners, q);
   const double spread = std::abs(plane.ahead) * (seen.s_hi - seen.s_lo) / 2;
-  const double length = std::hypot(plane.a, plane.b);
+  const double length = std::sqrt(plane.a * plane.a + plane.b * plane.b);
   const bool is_line = spread <= length * seen.margin / 4 && seen.s_hi > seen.s_lo;
   // "ahead" < 0: a query further from the light has the triangle ahead of it.
   const double sign = plane.ahead > 0 ? -1 : 1;

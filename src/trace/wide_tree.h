@@ -58,6 +58,11 @@ struct WideLeaf {
 inline constexpr size_t kTriangleBytes = 10 * sizeof(float);
 inline constexpr size_t kLeafSlack = 64;
 
+struct FreeLines {
+  size_t mapped = 0;  // bytes of a mapping of its own; 0: from the heap
+  void operator()(std::byte* bytes) const;
+};
+
 /// Whole cache lines, on huge pages where the system has them.
 class LineMemory {
  public:
@@ -68,10 +73,7 @@ class LineMemory {
   size_t size() const { return size_; }
 
  private:
-  struct Free {
-    void operator()(std::byte* bytes) const;
-  };
-  std::unique_ptr<std::byte, Free> bytes_;
+  std::unique_ptr<std::byte, FreeLines> bytes_;
   size_t size_ = 0;
 };
 

@@ -127,7 +127,9 @@ TEST(Accelerator, ThreadsDoNotChangeTheTrees) {
 }
 
 TEST(Accelerator, ManyThreadsMayAskAtOnce) {
-  const Accelerator scene(random_mesh(300, 5), some_areas());
+  AcceleratorOptions options;
+  options.routing = Routing::kAreas;
+  const Accelerator scene(random_mesh(300, 5), some_areas(), options);
   std::vector<Ray> rays;
   for (const InfluenceArea& area : some_areas())
     for (const Ray& ray : cast_rays(AreaRays{area, RayStart::kRandomDepth}, 300, 7)) rays.push_back(ray);
@@ -189,6 +191,7 @@ TEST(Accelerator, WideTreesCostMemoryAndSaveNodes) {
   const TriangleMesh mesh = random_mesh(500, 16);
   AcceleratorOptions options;
   options.coverage = std::nullopt;
+  options.routing = Routing::kAreas;
   const Accelerator wide(mesh, some_areas(), options);
   options.traversal = Traversal::kBinary;
   const Accelerator binary(mesh, some_areas(), options);

@@ -23,9 +23,10 @@ bool identical(const Hit& a, const Hit& b) {
   return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
-AcceleratorOptions options_of(LocalSpace space, bool covered) {
+AcceleratorOptions options_of(LocalSpace space, bool covered, Routing routing = Routing::kAreas) {
   AcceleratorOptions options;
   options.space = space;
+  options.routing = routing;
   if (!covered) options.coverage.reset();
   return options;
 }
@@ -49,11 +50,25 @@ TEST(Classification, EveryStructureEqualsBruteForce) {
     parallel_for(rays.size(), 64, 0, [&](size_t begin, size_t end) {
       for (size_t i = begin; i < end; ++i) expected[i] = intersect_reference(mesh, rays[i]);
     });
-    for (const auto& [space, covered] :
-         {std::pair{LocalSpace::kRay, false}, std::pair{LocalSpace::kRay, true}, std::pair{LocalSpace::kWorld, true}}) {
-      const Accelerator scene(mesh, areas, options_of(space, covered));
+    struct Way {
+      LocalSpace space;
+      bool covered;
+      Routing routing;
+    };
+    constexpr Routing kAreas = Routing::kAreas, kCheapest = Routing::kCheapest;
+    for (const auto& [space, covered, routing] :
+         {Way{LocalSpace::kRay, false, kAreas}, Way{LocalSpace::kRay, true, kAreas},
+          Way{LocalSpace::kWorld, true, kAreas}, Way{LocalSpace::kNone, true, kAreas},
+          Way{LocalSpace::kRay, true, kCheapest}, Way{LocalSpace::kWorld, false, kCheapest}}) {
+      const Accelerator scene(mesh, areas, options_of(space, covered, routing));
       AcceleratorCounters counters;
+      std::vector<Hit> hits(rays.size());
+      std::vector<uint8_t> flags(rays.size());
+      scene.intersect(rays, hits);
+      scene.occluded(rays, flags);
       for (size_t i = 0; i < rays.size(); ++i) {
+        ASSERT_TRUE(identical(hits[i], expected[i])) << families[f].name << " ray " << i;
+        ASSERT_EQ(flags[i] != 0, is_hit(expected[i])) << families[f].name << " ray " << i;
         ASSERT_TRUE(identical(scene.intersect(rays[i]), expected[i])) << families[f].name << " ray " << i;
         ASSERT_TRUE(identical(scene.intersect(rays[i], &counters), expected[i])) << families[f].name << " ray " << i;
         ASSERT_EQ(scene.occluded(rays[i]), is_hit(expected[i])) << families[f].name << " ray " << i;
@@ -63,6 +78,7 @@ TEST(Classification, EveryStructureEqualsBruteForce) {
       EXPECT_LE(counters.columns + counters.cones, counters.local_searches);
       EXPECT_TRUE(covered || counters.covered == 0);
       EXPECT_TRUE(space == LocalSpace::kRay || counters.columns + counters.cones == 0);
+      EXPECT_TRUE(space != LocalSpace::kNone || counters.local_searches == 0);
       all.add(counters);
     }
   }
@@ -106,6 +122,29 @@ TEST(Classification, AGivenFrameIsTaken) {
             Accelerator(mesh, {sun}, options_of(LocalSpace::kWorld, false)).wide_memory_bytes());
 }
 
+/// Equal builds choose alike, say so, and keep what they use.
+TEST(Classification, RoutesAreChosenByCountedCost) {
+  const TriangleMesh mesh = test::mesh_families(2).front().mesh;
+  const InfluenceArea sun = directional_light_area("sun", {0.5f, -0.7f, 0.5f}, mesh_bounds(mesh));
+  const Accelerator scene(mesh, {sun}, options_of(LocalSpace::kRay, true, Routing::kCheapest));
+  const Accelerator again(mesh, {sun}, options_of(LocalSpace::kRay, true, Routing::kCheapest));
+  const std::string routes = scene.explain({}, 10).areas[0].routes;
+  EXPECT_EQ(routes, again.explain({}, 10).areas[0].routes);
+  EXPECT_NE(routes.find("predicted ns"), std::string::npos) << routes;
+  EXPECT_EQ(std::ranges::count(routes, '\n'), 4) << routes;
+
+  // A local tree that the global one beats is not searched, and keeps no fast form.
+  Ray near_axis{{0, 0, 0}, {-0.5f, 0.7f, -0.52f}};
+  AcceleratorCounters counters;
+  scene.occluded(near_axis, &counters);
+  const bool searches = routes.find("any hit: along it coverage, near it its tree") == 0;
+  EXPECT_EQ(counters.local_searches, searches ? 1u : 0u) << routes;
+  const Accelerator without(mesh, {sun}, options_of(LocalSpace::kNone, true, Routing::kCheapest));
+  EXPECT_TRUE(without.local_trees().empty());
+  EXPECT_LT(without.memory_bytes(), scene.memory_bytes());
+  EXPECT_EQ(without.explain({}, 10).areas[0].structures, "coverage");
+}
+
 TEST(Classification, ExplainsItself) {
   const TriangleMesh mesh = test::mesh_families(2).front().mesh;
   const InfluenceArea sun = directional_light_area("sun", {0.5f, -0.7f, 0.5f}, mesh_bounds(mesh));
@@ -125,6 +164,7 @@ TEST(Classification, ExplainsItself) {
   EXPECT_NE(area.structures.find("tree in ray space (shear_"), std::string::npos) << area.structures;
   const std::string text = to_text(explanation);
   EXPECT_NE(text.find("sun: coverage, tree in ray space"), std::string::npos) << text;
+  EXPECT_NE(text.find("any hit: along it coverage, near it its tree"), std::string::npos) << text;
   EXPECT_NE(text.find("of 1 rays: 0.0 % answered by coverage"), std::string::npos) << text;
   EXPECT_TRUE(Accelerator(mesh).explain().areas.empty());
   EXPECT_THROW(scene.explain({}, 0), Error);

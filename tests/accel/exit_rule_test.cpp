@@ -21,14 +21,15 @@ AcceleratorCounters check(const Accelerator& scene, const Ray& ray) {
   return counters;
 }
 
-/// Membership as in programs that look at vertices only.
-/// Without coverage, which would answer most of these rays before any tree is asked.
+/// Without coverage, which would answer most of these rays before any tree is asked, and with no choice by cost.
 AcceleratorOptions trees_alone() {
   AcceleratorOptions options;
   options.coverage = std::nullopt;
+  options.routing = Routing::kAreas;
   return options;
 }
 
+/// Membership as in programs that look at vertices only.
 bool has_vertex_inside(const AreaGeometry& geometry, Vec3 a, Vec3 b, Vec3 c) {
   return contains(geometry.region(), a) || contains(geometry.region(), b) || contains(geometry.region(), c);
 }

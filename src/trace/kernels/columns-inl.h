@@ -130,11 +130,11 @@ HWY_INLINE void choose_grids(const EyeGrids& eye, bool are_directions, size_t co
 }
 
 HWY_INLINE uint32_t cell_at(const CoverageTile& tile, float x, float y) {
-  const int32_t across = 1 << tile.levels;
+  const auto across = static_cast<int32_t>(tile.across);
   const auto size = static_cast<float>(across);
   const int32_t cx = std::clamp(static_cast<int32_t>(x * size), 0, across - 1);
   const int32_t cy = std::clamp(static_cast<int32_t>(y * size), 0, across - 1);
-  return tile.first_cell + (static_cast<uint32_t>(cy) << tile.levels) + static_cast<uint32_t>(cx);
+  return tile.first_cell + static_cast<uint32_t>(cy) * tile.across + static_cast<uint32_t>(cx);
 }
 
 /// The code at or below a depth's place on the tile's scale.

@@ -137,6 +137,7 @@ HWY_INLINE uint32_t first_hits(const CoverageGrid& grid, float x, float y, const
       }
     }
     if (size == kMostCandidates) tell_all();
+    hwy::Prefetch(grid.mesh->triangles.data() + triangle.id);
     candidates[size++] = {triangle.id, depth + radius};
   }
   tell_all();
@@ -354,11 +355,18 @@ inline bool find_cell(const CoverageGrid& grid, const SingleColumn& c, uint32_t&
   return true;
 }
 
+/// What a search of the cell reads first, before it is known that it is read.
+HWY_INLINE void fetch_list(const CoverageGrid& grid, const CoverageCell& cell) {
+  hwy::Prefetch(grid.references.data() + cell.first);
+  hwy::Prefetch(grid.triangles.data() + cell.top);
+}
+
 inline std::optional<bool> single_any(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray) {
   uint32_t tile = 0, number = 0;
   if (is_beside(grid, column)) return false;
   if (!find_cell(grid, column, tile, number)) return {};
   const CoverageCell* cell = &grid.cells[number];
+  fetch_list(grid, *cell);
   if (code_of(grid.tiles[tile], column.end) <= cell->far) return {};
   const uint16_t code = code_of(grid.tiles[tile], column.s);
   if (code < cell->cover) return true;
@@ -379,6 +387,7 @@ inline std::optional<Hit> single_nearest(const CoverageGrid& grid, const SingleC
   if (is_beside(grid, column)) return Hit{};
   if (!find_cell(grid, column, tile, number)) return {};
   const CoverageCell* cell = &grid.cells[number];
+  fetch_list(grid, *cell);
   if (code_of(grid.tiles[tile], column.s) <= cell->far && column.s < kInf) return {};
   Hit best;
   const auto consider = [&](uint32_t id) {

@@ -1,0 +1,46 @@
+// Which structure answers which rays: decided once, by the work that sample rays cost. Work is counted, not timed, so
+// equal builds take equal routes. No answer depends on them.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "raygrain/coverage.h"
+
+#include "accel/foreign.h"
+
+namespace raygrain {
+
+/// Of one kind of question.
+struct Route {
+  std::vector<Coverage> asked;    // the coverages that are asked, in the order of areas; nothing of invalid rays
+  std::vector<uint8_t> covers;    // by area: its coverage is among them
+  std::vector<uint8_t> searches;  // by area: its local tree is searched
+  bool searches_some = false;
+  ForeignFilter foreign;  // rays that none of these concerns
+};
+
+/// Any hit or the nearest one, of one ray, and of arrays, whose rays the global tree answers several at a time.
+struct Routes {
+  Route any, nearest, any_of_many, nearest_of_many;
+};
+
+/// What sample rays are expected to cost each way, in nanoseconds of the machine on which the prices were found: the
+/// rays along an area, which its coverage may answer, and rays within its tolerance. Infinite where there is no way.
+struct WayCosts {
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+  double coverage = kNone, local = kNone, global = 0;
+  double off_local = kNone, off_global = 0;
+};
+struct AreaCosts {
+  WayCosts any, nearest;
+};
+
+/// The cheapest ways. Without costs every structure that is there is used. `many`: what share of the global tree's
+/// costs a ray of many has.
+Routes choose_routes(std::span<const AreaGeometry> areas, std::span<const Coverage> coverages, bool has_locals,
+                     std::span<const AreaCosts> costs, double many);
+
+}  // namespace raygrain
