@@ -24,9 +24,9 @@ struct TreePrices {
 };
 constexpr TreePrices kWidePrices{15, 20, 28, 25}, kColumnPrices{35, 22, 24, 110}, kConePrices{55, 24, 38, 110};
 constexpr double kWalk = 180;  // a local search: finding the area, and how far its region reaches
-constexpr double kCell = 27, kCellTest = 11.5,
-                 kCellConfirmation = 75;  // a ray, a triangle of its cell, an intersection
-constexpr double kFarther = 5;            // a ray waits so much longer for a grid of twice the size, from a megabyte on
+/// Of a coverage: a ray, a triangle of its cell, an intersection; and how much longer a ray waits for a grid of twice
+/// the size, from a megabyte on.
+constexpr double kCell = 27, kCellTest = 11.5, kCellConfirmation = 75, kFarther = 5;
 
 /// log2(1 + x), with lines between the powers of two: the library's logarithms differ.
 double octaves(double x) {
@@ -46,7 +46,7 @@ void spread(const InfluenceArea& area, std::vector<Ray>& rays) {
   for (size_t i = 0; i < rays.size(); ++i) {
     const Vec3d d = to_double(rays[i].direction);
     const Frame frame = make_frame(to_double(rays[i].origin), d, {});
-    // A spiral: equal shares of the disc, and directions in turns.
+    // Radii fill the disc evenly, the ways to the side take turns.
     const double r = radius * std::sqrt((static_cast<double>(i) + 0.5) / static_cast<double>(rays.size()));
     const double turn = static_cast<double>(i * 29 % 64) / 32 - 1, side = i % 2 == 0 ? 1 : -1;
     const double across = std::sqrt(std::max(0.0, 1 - turn * turn)) * side;
