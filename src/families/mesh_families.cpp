@@ -15,7 +15,8 @@ namespace {
 
 /// Side of a square, or of a cube's faces, of about so many triangles each.
 int side_of(size_t triangles, size_t per_cell) {
-  return std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(triangles / per_cell)))));
+  const size_t cells = triangles / per_cell;
+  return std::max(1, static_cast<int>(std::lround(std::sqrt(static_cast<double>(cells)))));
 }
 
 NamedMesh torus_of(size_t triangles) {
@@ -43,6 +44,11 @@ NamedMesh closed_shape(uint64_t kind, size_t triangles, Random& random) {
     default:
       return with_slivers(torus_of(triangles / 2), triangles, random);
   }
+}
+
+NamedMesh turned_about(NamedMesh source, Random& random) {
+  const std::string name = source.name + "_turned";
+  return turned(name, std::move(source), random);
 }
 
 /// What is small is not moved far away: nothing of it would be left.
@@ -134,7 +140,7 @@ std::vector<NamedMesh> closed_mesh_families(uint64_t seed) {
       for (const bool far : {false, true}) {
         if (far && scale < 1) continue;
         NamedMesh shape = closed_shape(kind, 40 + random.below(160), random);
-        if (random.below(2)) shape = turned(shape.name + "_turned", std::move(shape), random);
+        if (random.below(2)) shape = turned_about(std::move(shape), random);
         all.push_back(placed(std::move(shape), scale, far));
       }
   return all;
@@ -147,7 +153,7 @@ NamedMesh random_family_mesh(size_t triangles, uint64_t seed) {
   if (kind == 1) return snapped_soup(triangles, random);
   if (kind < 2 + kOpenShapes) return open_shape(kind - 2, triangles, random);
   NamedMesh shape = closed_shape(kind - 2 - kOpenShapes, triangles, random);
-  if (random.below(3) == 0) shape = turned(shape.name + "_turned", std::move(shape), random);
+  if (random.below(3) == 0) shape = turned_about(std::move(shape), random);
   const double scales[] = {1, 1, 1, 1, 1e-30, 1e-6, 1e-3, 10, 1e3, 1e6};
   const double scale = scales[random.below(std::size(scales))];
   return placed(std::move(shape), scale, scale >= 1 && random.below(4) == 0);

@@ -73,7 +73,7 @@ std::optional<Difference> compare(const RayStructure& structure, const Round& ro
         if (group.must_hit && room.until[i] == kInf && is_leak(room, i)) ++tally.leaks;
         std::string what = wrong(room, i, round.expected[g][i]);
         if (what.empty()) continue;
-        if (!is_really_wrong(round, room, g, i)) what = "the tree of reference is wrong: " + what;
+        if (!is_really_wrong(round, room, g, i)) what.insert(0, "the tree of reference is wrong: ");
         note({what, g, i});
       }
     }

@@ -205,7 +205,7 @@ TEST(Verify, EndsWhenItIsToldTo) {
 
 TEST(Verify, TakesGivenScenesInTurns) {
   VerifyOptions options;
-  options.rays = 50'000;
+  options.rays = 25'000;
   options.tests_per_scene = 50'000;
   options.scenes = {generate_scene({"random100", 0, 1}), generate_scene({"terrain", 40, 1})};  // few and many triangles
   const VerifyResult result = verify(options);
