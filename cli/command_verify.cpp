@@ -109,7 +109,8 @@ Action declare_verify(Arguments& arguments) {
   arguments.real("--minutes", "M", options->minutes, {0, kMostMinutes},
                  "End after this time, with what was done so far");
   arguments.whole("--seed", options->seed, {}, "Of scenes, rays and structures");
-  arguments.output_folder("--out", "DIR", options->folder, {}, "Where scenes that show a wrong answer are saved [verify-failures]");
+  arguments.output_folder("--out", "DIR", options->folder, {},
+                          "Where scenes that show a wrong answer are saved [verify-failures]");
   add_common(arguments, options->common);
   arguments.footer(
       "Each answer is compared, bit by bit, with brute force over all triangles. What differs is made small and\n"
