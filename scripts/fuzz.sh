@@ -18,7 +18,7 @@ mkdir -p "$build/findings" "$build/logs"
 fuzz_one() {
   local name=$1 grown="$build/corpus/$1"
   mkdir -p "$grown"
-  local options=(-max_total_time="$(awk "BEGIN { print int($minutes * 60) }")" -timeout=25 -rss_limit_mb=3000
+  local options=(-max_total_time="$(awk "BEGIN { print int($minutes * 60) }")" -timeout=120 -rss_limit_mb=3000
                  -print_final_stats=1 -artifact_prefix="$build/findings/$name-")
   [ ! -f "$source/fuzz/dictionaries/$name.dict" ] || options+=(-dict="$source/fuzz/dictionaries/$name.dict")
   if nice -n 10 "$build/bin/fuzz_$name" "${options[@]}" "$grown" "$source/fuzz/corpus/$name" >"$build/logs/$name" 2>&1

@@ -97,7 +97,7 @@ class Faults : public testing::Test {
 
 TEST_F(Faults, FullDisks) {
   for (const Row& row : writing_commands())
-    for (const rlim_t bytes : {0, 5000, 70000}) {
+    for (const rlim_t bytes : {rlim_t{0}, rlim_t{5000}, rlim_t{70000}}) {
       SCOPED_TRACE(row.name + ", " + std::to_string(bytes) + " bytes a file");
       clear();
       RunOptions options;

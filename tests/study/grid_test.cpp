@@ -230,16 +230,6 @@ TEST(Grid, TakesRulesOfOnesOwn) {
   EXPECT_LT(column(run(changed), "global_cost"), column(plain, "global_cost"));
 }
 
-TEST_F(GridFile, RefusesMoreRowsThanAnybodyCanRun) {
-  const StudyGrid grid = load(replaced(kGrid, "\"repeats\": 2", "\"repeats\": 1000000000"));
-  try {
-    make_study(grid);
-    ADD_FAILURE() << "no error";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.code, ErrorCode::kLimit) << error.what();
-  }
-}
-
 /// A lambda is enough, and a measure that equals surface area gives surface area's rows.
 TEST(Grid, TakesAMeasureOfOnesOwn) {
   StudyGrid grid = preset_grid("paper", {.only = {"Random100"}, .rays = 200});
