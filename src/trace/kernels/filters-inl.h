@@ -88,6 +88,13 @@ struct Candidates {
   alignas(32) float earliest[8], latest[8];  // of t, for possible ones; earliest = -infinity where unknown
 };
 
+/// Those of the possible ones that do not surely lie behind `bound`. In leaves that are long along the rays most of
+/// what is hit lies behind another hit, and to decide it is dear: where walls stand across an axis, t is half way
+/// between two floats as often as not, and rounding it takes exact arithmetic.
+HWY_INLINE uint32_t not_behind(const Candidates& found, float bound) {
+  return found.possible & less_equal(load(found.earliest), broadcast(bound));
+}
+
 /// A ray against eight triangles.
 struct TriangleFilter {
   EightVectors origin, direction;

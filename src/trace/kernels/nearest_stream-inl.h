@@ -154,7 +154,8 @@ class NearestStream {
     for (size_t i = 0; i < s.waiting; ++i) {
       const auto& [ref, lanes, earliest] = s.leaves[i];
       if (earliest > s.bound) continue;
-      for (uint32_t bits = lanes; bits != 0;)
+      const bool is_one = (lanes & (lanes - 1)) == 0;
+      for (uint32_t bits = is_one ? lanes : still_possible(s, ref); bits != 0;)
         confirmations_.add(s.index, tree_.leaf(ref), take_lowest(bits), size_of(ref));
     }
     s.waiting = 0;
@@ -165,6 +166,12 @@ class NearestStream {
     ChildRef child;
     size_t size;
   };
+
+  /// Of a leaf's triangles those that may still matter, all hits of other leaves considered.
+  HWY_NOINLINE uint32_t still_possible(const Slot& s, ChildRef ref) const {
+    Candidates found;
+    return s.triangles.test<false>(tree_.leaf(ref), ref, s.bound, found);
+  }
 
   /// The topmost that begins in time; the lowest always do.
   static HWY_INLINE Popped pop(const StreamStack& stack, float bound) {

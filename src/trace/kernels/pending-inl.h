@@ -53,8 +53,10 @@ class Pending {
       earliest = std::min(earliest, found.earliest[lane]);
       if (kPruning && (found.sure >> lane & 1) != 0) bound = std::min(bound, found.latest[lane]);
     }
+    const bool is_one = (found.possible & (found.possible - 1)) == 0;
+    const uint32_t lanes = kPruning && !is_one ? not_behind(found, bound) : found.possible;
     if (size_ == kCapacity) bound = decide_apart(bound);
-    entries_[size_++] = {leaf.bytes, leaf.count, found.possible, found.sure, size, earliest};
+    entries_[size_++] = {leaf.bytes, leaf.count, lanes, found.sure, size, earliest};
     return bound;
   }
   /// Decides all of them; no hit beyond `bound` matters. Returns the new bound.
