@@ -110,6 +110,10 @@ std::string baseline_recipe(const StudyResults& study) {
   const auto near =
       std::find_if(recipes.begin(), recipes.end(), [](const std::string& r) { return r.starts_with(kBaseline); });
   if (near != recipes.end()) return *near;
+  const auto standard =
+      std::find_if(recipes.begin(), recipes.end(), [](const std::string& r) { return r.starts_with("SAH+"); });
+  if (standard != recipes.end()) return *standard;
+  if (const std::string tuned = default_recipe(study); !tuned.empty()) return tuned;
   return recipes.empty() ? std::string{} : recipes.front();
 }
 
@@ -184,8 +188,9 @@ std::vector<ChartPanel> user_bars(std::span<const ResultRow> rows, const std::ve
 
 std::vector<RankedRecipe> ranking(std::span<const ResultRow> rows, const std::string& baseline, const RowValue& value) {
   std::vector<RankedRecipe> ranked;
-  for (const std::string& recipe : recipe_names(rows))
-    if (const PairedRatio ratio = paired_ratio(rows, recipe, baseline, value); ratio.count > 0)
+  const std::vector<ResultRow> compared = most_comparable(rows, baseline, positive(value));
+  for (const std::string& recipe : recipe_names(compared))
+    if (const PairedRatio ratio = paired_ratio(compared, recipe, baseline, value); ratio.count > 0)
       ranked.push_back({recipe, ratio});
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const RankedRecipe& a, const RankedRecipe& b) { return a.ratio.mean < b.ratio.mean; });

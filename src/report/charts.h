@@ -38,12 +38,33 @@ std::vector<Chart> recipe_charts(const StudyResults& study);
 Chart recipe_prediction_chart(const StudyResults& study);
 Chart tree_shape_chart(const StudyResults& study, const std::string& baseline);
 
+/// Rows of recipes over the tests that all of them, the baseline among them, have in common.
+struct ComparedRecipes {
+  std::vector<ResultRow> rows;
+  size_t tests = 0;
+};
+/// All recipes that share tests with the baseline, in as few sets as can be held against each other: each set keeps at
+/// least half of the tests that its most tested recipe shares with the baseline. The largest first. A test counts for a
+/// recipe where `value` is a number.
+std::vector<ComparedRecipes> comparable(std::span<const ResultRow> rows, const std::string& baseline,
+                                        const RowValue& value);
+/// The rows of the first of these sets.
+std::vector<ResultRow> most_comparable(std::span<const ResultRow> rows, const std::string& baseline,
+                                       const RowValue& value);
+/// NaN for what is not above zero and has no geometric mean.
+RowValue positive(RowValue value);
+/// Which recipes are not in the first set; empty where all are.
+std::string left_out_note(const std::vector<ComparedRecipes>& blocks);
+
 struct RankedRecipe {
   std::string recipe;
   PairedRatio ratio;
 };
-/// Recipes by their ratio to the baseline, the best first.
+/// Recipes by their ratio to the baseline over the tests that all of them have (most_comparable), the best first.
 std::vector<RankedRecipe> ranking(std::span<const ResultRow> rows, const std::string& baseline, const RowValue& value);
+
+/// Is it a row of the paper's combination PAH+SPFH, whatever its parameters?
+bool is_tuning_row(const ResultRow& row);
 
 // What the paper called for, or left at an estimate: nothing where the study holds no such rows.
 std::vector<Chart> parameter_charts(const StudyResults& study);
@@ -78,7 +99,9 @@ std::vector<ResultRow> main_rays(std::span<const ResultRow> rows);
 
 /// Recipes of the study that the paper does not have, in order: a researcher's own.
 std::vector<std::string> own_recipes(const StudyResults& study);
-/// SAH+LSPH where it is there, else what looks most like it.
+/// PAH+SPFH with the paper's own parameters; empty where it is not there.
+std::string default_recipe(const StudyResults& study);
+/// SAH+LSPH where it is there, else what looks most like it, PAH+SPFH with the paper's parameters, or any.
 std::string baseline_recipe(const StudyResults& study);
 
 /// Series with a colour each: a recipe of the paper has the same in every chart, the baseline is grey.

@@ -49,7 +49,7 @@ bool is_default(const ResultRow& row, const char* column, double value) {
 /// Rows built with PAH+SPFH, a case's three thresholds, and the paper's other parameters.
 std::vector<ResultRow> rows_of_case(const StudyResults& study, const PublishedTuning& row) {
   return filtered(study.rows, [&](const ResultRow& r) {
-    return r.recipe.starts_with("PAH+SPFH") && near(r.number("split_plane_quality_threshold"), row.quality) &&
+    return is_tuning_row(r) && near(r.number("split_plane_quality_threshold"), row.quality) &&
            near(r.number("acceptable_ratio"), row.acceptable) && near(r.number("excellent_ratio"), row.excellent) &&
            is_default(r, "bins", PaperParameters{}.bins) &&
            is_default(r, "max_non_fallback_levels", PaperParameters{}.max_non_fallback_levels);

@@ -44,13 +44,7 @@ std::vector<Metric> metrics() {
 }
 
 constexpr const char* kAxis = "multiple of the paper's parameters, geometric mean";
-
-/// The recipe with the paper's own parameters: what all others are compared with, test by test.
-std::string default_recipe(const StudyResults& study) {
-  for (const ResultRow& row : study.rows)
-    if (has_default_thresholds(row) && has_default_bins(row) && has_default_levels(row)) return row.recipe;
-  return {};
-}
+constexpr size_t kFewestSettings = 3;  // on a line
 
 ChartPoint ratio_point(const std::string& series, double x, const PairedRatio& ratio) {
   return {.series = series, .x = x, .y = ratio.mean, .low = ratio.low, .high = ratio.high, .count = ratio.count};
@@ -67,16 +61,19 @@ Chart threshold_chart(const StudyResults& study, const std::string& baseline) {
   };
   double best = kNotMeasured;
   for (const Metric& metric : metrics()) {
-    if (!any_measured(rows, metric.value)) continue;
+    const auto blocks = comparable(rows, baseline, positive(metric.value));
+    if (blocks.empty()) continue;
+    if (chart.panels.empty()) chart.notes.push_back(left_out_note(blocks));
+    const std::vector<ResultRow>& compared = blocks.front().rows;
     ChartPanel panel{.title = metric.title,
                      .kind = ChartKind::kLines,
                      .x = {"split plane quality threshold"},
                      .y = {kAxis},
                      .reference = 1};
-    panel.series = coloured(distinct(rows, pair));
-    for (const std::string& recipe : distinct(rows, [](const ResultRow& row) { return row.recipe; })) {
-      const std::vector<ResultRow> own = rows_of_recipe(rows, recipe);
-      const PairedRatio ratio = paired_ratio(rows, recipe, baseline, metric.value);
+    panel.series = coloured(distinct(compared, pair));
+    for (const std::string& recipe : distinct(compared, [](const ResultRow& row) { return row.recipe; })) {
+      const std::vector<ResultRow> own = rows_of_recipe(compared, recipe);
+      const PairedRatio ratio = paired_ratio(compared, recipe, baseline, metric.value);
       panel.measured.push_back(
           ratio_point(pair(own.front()), own.front().number("split_plane_quality_threshold"), ratio));
       if (chart.panels.empty() && !(ratio.mean >= best)) {
@@ -89,6 +86,7 @@ Chart threshold_chart(const StudyResults& study, const std::string& baseline) {
     }
     chart.panels.push_back(std::move(panel));
   }
+  std::erase(chart.notes, std::string{});
   return chart;
 }
 
@@ -101,17 +99,19 @@ Chart single_chart(std::span<const ResultRow> rows, const std::string& baseline,
                    .x = {title},
                    .y = {kAxis},
                    .reference = 1};
-  const std::vector<std::string> recipes = distinct(rows, [](const ResultRow& row) { return row.recipe; });
-  if (recipes.size() < 3) return chart;
+  const auto setting = [&](const ResultRow& row) { return std::string(row.text(column)); };
+  if (distinct(rows, setting).size() < kFewestSettings) return chart;
   std::vector<std::string> names;
   double best = kNotMeasured;
   for (const Metric& metric : metrics()) {
-    if (!any_measured(rows, metric.value)) continue;
+    const auto blocks = comparable(rows, baseline, positive(metric.value));
+    if (blocks.empty()) continue;
     names.emplace_back(metric.series);
-    for (const std::string& recipe : recipes) {
-      const PairedRatio ratio = paired_ratio(rows, recipe, baseline, metric.value);
-      const double x = rows_of_recipe(rows, recipe).front().number(column);
-      if (ratio.count == 0) continue;
+    if (names.size() == 1) chart.notes.push_back(left_out_note(blocks));
+    const std::vector<ResultRow>& compared = blocks.front().rows;
+    for (const std::string& recipe : distinct(compared, [](const ResultRow& row) { return row.recipe; })) {
+      const PairedRatio ratio = paired_ratio(compared, recipe, baseline, metric.value);
+      const double x = rows_of_recipe(compared, recipe).front().number(column);
       panel.measured.push_back(ratio_point(metric.series, x, ratio));
       if (names.size() > 1 || ratio.mean >= best) continue;
       best = ratio.mean;
@@ -120,6 +120,8 @@ Chart single_chart(std::span<const ResultRow> rows, const std::string& baseline,
                       plain_number(x), short_number(ratio.mean), counted(ratio.count, "test"));
     }
   }
+  if (names.empty()) return chart;
+  std::erase(chart.notes, std::string{});
   panel.series = coloured(names);
   chart.panels.push_back(std::move(panel));
   return chart;
@@ -127,7 +129,21 @@ Chart single_chart(std::span<const ResultRow> rows, const std::string& baseline,
 
 }  // namespace
 
-std::vector<Chart> parameter_charts(const StudyResults& study) {
+bool is_tuning_row(const ResultRow& row) {
+  constexpr std::string_view kTuned = "PAH+SPFH";
+  const std::string_view recipe = row.text(kRecipeColumn);
+  return recipe.starts_with(kTuned) && (recipe.size() == kTuned.size() || recipe[kTuned.size()] == '@');
+}
+
+std::string default_recipe(const StudyResults& study) {
+  for (const ResultRow& row : study.rows)
+    if (is_tuning_row(row) && has_default_thresholds(row) && has_default_bins(row) && has_default_levels(row))
+      return row.recipe;
+  return {};
+}
+
+std::vector<Chart> parameter_charts(const StudyResults& all) {
+  const StudyResults study{all.name, all.id, filtered(main_rays(all.rows), is_tuning_row)};
   const std::string baseline = default_recipe(study);
   const std::vector<ResultRow> bins =
       filtered(study.rows, [](const ResultRow& row) { return has_default_thresholds(row) && has_default_levels(row); });

@@ -32,27 +32,39 @@ std::vector<Payment> payments(const StudyResults& study) {
   return all;
 }
 
-Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
-  Chart chart{.title = "All recipes against " + baseline};
-  ChartPanel panel{.title = "Paid per ray, as a multiple of " + baseline + "'s",
+ChartPoint point_of(const RankedRecipe& ranked, const char* series) {
+  return {.series = series,
+          .group = ranked.recipe,
+          .y = ranked.ratio.mean,
+          .low = ranked.ratio.low,
+          .high = ranked.ratio.high,
+          .count = ranked.ratio.count};
+}
+
+/// All recipes of a block, the best first by what is paid first.
+ChartPanel ranking_panel(const ComparedRecipes& block, const std::string& baseline, const std::vector<Payment>& paid) {
+  ChartPanel panel{.title = fmt::format("Paid per ray, as a multiple of {}'s, over {} that all of these have", baseline,
+                                        counted(block.tests, "test")),
                    .kind = ChartKind::kRanking,
                    .y = {"geometric mean over tests of recipe / " + baseline},
                    .reference = 1};
-  const std::vector<Payment> paid = payments(study);
-  if (paid.empty()) return chart;
-  const std::vector<RankedRecipe> ranked = ranking(study.rows, baseline, paid.front().value);
-  for (const RankedRecipe& r : ranked) panel.groups.push_back(r.recipe);
+  for (const RankedRecipe& r : ranking(block.rows, baseline, paid.front().value)) panel.groups.push_back(r.recipe);
   for (const Payment& payment : paid) {
     panel.series.push_back({payment.series, payment.colour});
-    for (const RankedRecipe& r : ranking(study.rows, baseline, payment.value))
-      panel.measured.push_back({.series = payment.series,
-                                .group = r.recipe,
-                                .y = r.ratio.mean,
-                                .low = r.ratio.low,
-                                .high = r.ratio.high,
-                                .count = r.ratio.count});
+    for (const RankedRecipe& r : ranking(block.rows, baseline, payment.value))
+      panel.measured.push_back(point_of(r, payment.series));
   }
-  if (ranked.empty()) return chart;
+  return panel;
+}
+
+Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
+  Chart chart{.title = "All recipes against " + baseline};
+  const std::vector<Payment> paid = payments(study);
+  if (paid.empty()) return chart;
+  const std::vector<ComparedRecipes> blocks = comparable(study.rows, baseline, positive(paid.front().value));
+  if (blocks.empty()) return chart;
+  for (const ComparedRecipes& block : blocks) chart.panels.push_back(ranking_panel(block, baseline, paid));
+  const std::vector<RankedRecipe> ranked = ranking(blocks.front().rows, baseline, paid.front().value);
   const RankedRecipe& best = ranked.front();
   chart.finding =
       best.recipe == baseline
@@ -62,10 +74,10 @@ Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
                         short_number(best.ratio.mean), paid.front().series, baseline, counted(best.ratio.count, "test"),
                         short_number(best.ratio.low), short_number(best.ratio.high));
   if (paid.size() > 1 && std::string_view(paid[1].series) == "time per ray")
-    if (const std::vector<RankedRecipe> timed = ranking(study.rows, baseline, paid[1].value); !timed.empty())
+    if (const std::vector<RankedRecipe> timed = ranking(blocks.front().rows, baseline, paid[1].value); !timed.empty())
       chart.finding += fmt::format(" In time {} is best: {} times that of {}.", timed.front().recipe,
                                    short_number(timed.front().ratio.mean), baseline);
-  chart.panels.push_back(std::move(panel));
+  if (const std::string note = left_out_note(blocks); !note.empty()) chart.notes.push_back(note);
   return chart;
 }
 
@@ -79,7 +91,9 @@ ChartPanel ratio_dots(const StudyResults& study, const std::string& baseline, co
                    .series = coloured(recipe_names(study.rows)),
                    .reference = 1};
   for (const std::string& name : panel.groups) {
-    const std::vector<ResultRow> here = filtered(study.rows, [&](const ResultRow& row) { return group(row) == name; });
+    const std::vector<ResultRow> here =
+        most_comparable(filtered(study.rows, [&](const ResultRow& row) { return group(row) == name; }), baseline,
+                        positive(payment.value));
     for (const ChartSeries& series : panel.series) {
       const PairedRatio ratio = paired_ratio(here, series.name, baseline, payment.value);
       if (ratio.count > 0)
@@ -123,7 +137,7 @@ Chart group_chart(const StudyResults& study, const std::string& baseline, const 
 }
 
 /// What users pay with the fallback into the global tree, against using that alone.
-Chart fallback_chart(const StudyResults& study) {
+Chart fallback_chart(const StudyResults& all, const std::string& baseline) {
   Chart chart{.title = "Local trees with fallback against the global tree alone"};
   const auto ratio = [](const char* column, const char* other) -> RowValue {
     return [=](const ResultRow& row) { return row.number(column) / row.number(other); };
@@ -131,24 +145,28 @@ Chart fallback_chart(const StudyResults& study) {
   std::vector<Payment> paid{
       {"", "pruned cost", "#d9480f", ratio("pruned_cost_with_fallback", "global_pruned_cost")},
       {"", "full-traversal cost (the paper's)", "#868e96", ratio("cost_with_fallback", "global_cost")}};
-  std::erase_if(paid, [&](const Payment& payment) { return !any_measured(study.rows, payment.value); });
+  std::erase_if(paid, [&](const Payment& payment) { return !any_measured(all.rows, payment.value); });
   if (paid.empty()) return chart;
+  const std::vector<ComparedRecipes> blocks = comparable(all.rows, baseline, paid.front().value);
+  if (blocks.empty()) return chart;
+  const std::vector<ResultRow>& compared = blocks.front().rows;
+  if (const std::string note = left_out_note(blocks); !note.empty()) chart.notes.push_back(note);
   ChartPanel panel{.title = "Paid per ray, as a multiple of the global tree's cost",
                    .kind = ChartKind::kRanking,
                    .y = {"mean over tests"},
-                   .groups = recipe_names(study.rows),
+                   .groups = recipe_names(compared),
                    .reference = 1};
   for (const Payment& payment : paid) {
     panel.series.push_back({payment.series, payment.colour});
     for (ChartPoint& point : group_means(
-             study.rows, [](const ResultRow& row) { return row.recipe; },
+             compared, [](const ResultRow& row) { return row.recipe; },
              [&](const ResultRow&) { return std::string(payment.series); }, payment.value))
       panel.measured.push_back(std::move(point));
   }
   std::string text;
   size_t best = 0, tests = 0;
   for (const std::string& recipe : panel.groups) {
-    const std::vector<ResultRow> rows = rows_of_recipe(study.rows, recipe);
+    const std::vector<ResultRow> rows = rows_of_recipe(compared, recipe);
     const auto gain = [&](const ResultRow& row) { return paid.front().value(row) < 1; };
     const auto count = static_cast<size_t>(std::count_if(rows.begin(), rows.end(), gain));
     if (!text.empty() && count * tests <= best * rows.size()) continue;
@@ -176,13 +194,10 @@ Chart build_chart(const StudyResults& study, const std::string& baseline) {
   panel.series = {{"build time", "#1098ad"}};
   for (const RankedRecipe& r : ranked) {
     panel.groups.push_back(r.recipe);
-    panel.measured.push_back({.series = "build time",
-                              .group = r.recipe,
-                              .y = r.ratio.mean,
-                              .low = r.ratio.low,
-                              .high = r.ratio.high,
-                              .count = r.ratio.count});
+    panel.measured.push_back(point_of(r, "build time"));
   }
+  if (const std::string note = left_out_note(comparable(study.rows, baseline, positive(build))); !note.empty())
+    chart.notes.push_back(note);
   chart.finding = fmt::format(
       "Trees of {} are built fastest ({} times the time of {}), those of {} slowest ({} times).", ranked.front().recipe,
       short_number(ranked.front().ratio.mean), baseline, ranked.back().recipe, short_number(ranked.back().ratio.mean));
@@ -196,7 +211,7 @@ std::vector<Chart> recipe_charts(const StudyResults& all) {
   if (recipe_names(all.rows).size() < 2) return {};
   const StudyResults study{all.name, all.id, main_rays(all.rows)};
   const std::string baseline = baseline_recipe(study);
-  std::vector<Chart> charts{ranking_chart(study, baseline), fallback_chart(study)};
+  std::vector<Chart> charts{ranking_chart(study, baseline), fallback_chart(study, baseline)};
   const auto add = [&](const char* title, const RowText& group, const std::vector<std::string>& groups) {
     if (groups.size() > 1 && groups.size() < kMostGroups)
       charts.push_back(group_chart(study, baseline, title, group, groups));

@@ -54,7 +54,9 @@ std::vector<Chart> scaling_charts(const StudyResults& study) {
       chart.panels.push_back(line_panel(study.rows, metric.title, [](const ResultRow& row) { return row.recipe; },
                                         {ChartAxis{"triangles in the tree", true}, triangles},
                                         {ChartAxis{metric.axis, true}, metric.value}));
-  const std::vector<ResultRow> there = filtered(study.rows, [&](const ResultRow& row) { return row.scene == largest; });
+  const std::vector<ResultRow> there =
+      most_comparable(filtered(study.rows, [&](const ResultRow& row) { return row.scene == largest; }),
+                      baseline_recipe(study), column_value("pruned_cost"));
   std::string best;
   double cost = kNotMeasured;
   for (const std::string& recipe : distinct(there, [](const ResultRow& row) { return row.recipe; }))

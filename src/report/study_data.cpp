@@ -17,17 +17,16 @@ constexpr std::array<std::string_view, 8> kOwnMetrics{"estimated_pah",   "estima
                                                       "global_searches", "continued"};
 constexpr std::array<std::string_view, 7> kOwnEndings{"_seconds", "_bytes",  "_cost",      "_ratio",
                                                       "_share",   "_culled", "_per_global"};
-/// What makes two rows the same test of different trees.
 constexpr std::array<std::string_view, 8> kTestColumns{"scene",   "kind",  "variant", "area",
                                                        "ray_set", "areas", "seed",    "repeat"};
+
+}  // namespace
 
 std::string test_key(const ResultRow& row) {
   std::string key;
   for (const std::string_view column : kTestColumns) key += std::string(row.text(column)) + '\n';
   return key;
 }
-
-}  // namespace
 
 bool is_metric(std::string_view column) {
   const auto named = [&](const Field& f) { return f.name == column; };

@@ -50,6 +50,9 @@ double mean_of(std::span<const ResultRow> rows, const RowValue& value);
 /// The lower one of two middle values.
 double median_of(std::span<const ResultRow> rows, const RowValue& value);
 
+/// What makes two rows the same test of different recipes.
+std::string test_key(const ResultRow& row);
+
 /// Tests that two recipes share (all names but the recipe's are equal), compared test by test.
 struct PairedRatio {
   double mean = kNotMeasured;  // geometric mean of recipe / baseline

@@ -77,13 +77,16 @@ std::vector<Chart> charts_of(const StudyResults& study) {
 
   if (study.name != "corrected" && has_paper_tests(study))
     append(charts, paper_charts({study.name, study.id, main_rays(study.rows)}));
-  if (Chart tuning = tuning_table(study); tuning.verdict != Verdict::kMissing) {
+  const bool all_tuning = std::all_of(study.rows.begin(), study.rows.end(), is_tuning_row);
+  Chart tuning = tuning_table({study.name, study.id, main_rays(study.rows)});
+  const bool is_tuned = tuning.verdict != Verdict::kMissing;
+  if (is_tuned) {
     charts.push_back(std::move(tuning));
     append(charts, parameter_charts(study));
-  } else {
-    append(charts, scaling_charts(study));
-    append(charts, recipe_charts(study));
   }
+  if (is_tuned && all_tuning) return charts;  // settings of one recipe
+  append(charts, scaling_charts(study));
+  append(charts, recipe_charts(study));
   return charts;
 }
 

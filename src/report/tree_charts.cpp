@@ -10,22 +10,36 @@ namespace raygrain {
 
 namespace {
 
+std::string tests(const ResultRow& row) {
+  const std::string kind = row.kind.empty() ? "all tests" : row.kind + " areas";
+  return kind + (row.text("ray_set").empty() ? "" : ", " + std::string(row.text("ray_set")) + " rays");
+}
+
 double prediction_error(const ResultRow& row) {
   const double own = row.number("estimated_cost");
   const double estimate = std::isnan(own) ? row.number("estimated_pah") : own;
   return std::abs(row.number("real_cost") / estimate - 1);
 }
 
+/// For each kind of tests those that its recipes have in common.
+std::vector<ResultRow> with_same_tests(const StudyResults& study) {
+  std::vector<ResultRow> rows;
+  for (const std::string& kind : distinct(study.rows, tests)) {
+    const auto is_of_kind = [&](const ResultRow& row) { return tests(row) == kind; };
+    const StudyResults own{study.name, study.id, filtered(study.rows, is_of_kind)};
+    const std::vector<ResultRow> same = most_comparable(own.rows, baseline_recipe(own), prediction_error);
+    rows.insert(rows.end(), same.begin(), same.end());
+  }
+  return rows;
+}
+
 }  // namespace
 
 /// Errors by recipe and by what was shot: matched rays are those that a measure assumes.
-Chart recipe_prediction_chart(const StudyResults& study) {
+Chart recipe_prediction_chart(const StudyResults& all) {
   Chart chart{.title = "How well trees predict their cost"};
+  const StudyResults study{all.name, all.id, with_same_tests(all)};
   if (!any_measured(study.rows, prediction_error)) return chart;
-  const auto tests = [](const ResultRow& row) {
-    const std::string kind = row.kind.empty() ? "all tests" : row.kind + " areas";
-    return kind + (row.text("ray_set").empty() ? "" : ", " + std::string(row.text("ray_set")) + " rays");
-  };
   if (any_measured(study.rows, column_value("pruned_cost"))) {
     ChartPanel paid{.title = "What users pay: pruned cost as a share of the predicted cost",
                     .kind = ChartKind::kRanking,
@@ -70,11 +84,15 @@ Chart recipe_prediction_chart(const StudyResults& study) {
 }
 
 /// Pruned cost first, then what it may come from: one tiny child beside one nearly as large as its parent.
-Chart tree_shape_chart(const StudyResults& study, const std::string& baseline) {
+Chart tree_shape_chart(const StudyResults& all, const std::string& baseline) {
   Chart chart{.title = "Shape of the trees: a small child and a large one"};
   const RowValue small = column_value("small_child_ratio"), large = column_value("large_child_ratio"),
                  level = column_value("max_level");
-  if (!any_measured(study.rows, level)) return chart;
+  if (!any_measured(all.rows, level)) return chart;
+  const std::vector<ComparedRecipes> blocks = comparable(all.rows, baseline, level);
+  if (blocks.empty()) return chart;
+  const StudyResults study{all.name, all.id, blocks.front().rows};
+  if (const std::string note = left_out_note(blocks); !note.empty()) chart.notes.push_back(note);
   const auto recipe = [](const ResultRow& row) { return row.recipe; };
   ChartPanel paid{.title = "What users pay: pruned cost as a multiple of " + baseline + "'s",
                   .kind = ChartKind::kRanking,
