@@ -45,7 +45,8 @@ std::string duration(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole / 60 % 60);
 }
 
-/// "Wood plane parallel PAH+SPFH, 3 min 20 s left". What an earlier run did says nothing about the speed of this one.
+/// "3 min 20 s left, Wood plane parallel PAH+SPFH": a terminal cuts long names off, not the time. What an earlier run
+/// did says nothing about the speed of this one.
 std::function<bool(const std::string&, double)> shower(Progress& progress) {
   struct State {
     Timer timer;
@@ -54,9 +55,8 @@ std::function<bool(const std::string&, double)> shower(Progress& progress) {
   return [&progress, state = std::make_shared<State>()](const std::string& step, double done) {
     if (state->begun < 0) state->begun = done;
     const double share = done - state->begun;
-    std::string text = step;
-    if (share > 0 && done < 1) text += ", " + duration(state->timer.seconds() * (1 - done) / share) + " left";
-    progress.show(text, done);
+    const bool is_known = share > 0 && done < 1;
+    progress.show(is_known ? duration(state->timer.seconds() * (1 - done) / share) + " left, " + step : step, done);
     return true;
   };
 }

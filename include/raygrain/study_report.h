@@ -15,7 +15,8 @@ namespace raygrain {
 /// A results file: a header and rows of as many cells. Columns have the names of docs/formats.md whatever the file
 /// calls them ("combo" and "name" become "recipe", ...).
 struct ResultTable {
-  std::string study;  // what the rows call it, else the name of the file or, for results.csv, of its folder
+  std::string study;  // what the rows call it, else the name of the file; of results.csv what study.txt beside it says,
+                      // else of its folder
   std::string path;
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;

@@ -129,7 +129,20 @@ void check_row(const ResultTable& table, const Record& record) {
                   "numbers look like 1.5, -2e-3 or nan; what was not measured is empty");
 }
 
-/// What the rows say, or what the file or its folder is called.
+/// What study.txt beside a results.csv says: "# raygrain-study 1 NAME HASH"; empty where it says nothing.
+std::string noted_name(const std::filesystem::path& folder) {
+  const std::string note = (folder / "study.txt").string();
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(note, none)) return {};
+  constexpr std::string_view kTitle = "# raygrain-study 1 ";
+  const std::string text = read_whole_file(note);
+  const std::string_view line = std::string_view(text).substr(0, text.find('\n'));
+  const size_t end = line.rfind(' ');
+  return line.starts_with(kTitle) && end >= kTitle.size() ? std::string(line.substr(kTitle.size(), end - kTitle.size()))
+                                                          : std::string{};
+}
+
+/// What the rows say, or study.txt, or what the file or its folder is called.
 std::string study_name(const ResultTable& table) {
   const auto column = std::find(table.columns.begin(), table.columns.end(), "study");
   if (column != table.columns.end()) {
@@ -138,8 +151,10 @@ std::string study_name(const ResultTable& table) {
   }
   const std::filesystem::path path(table.path);
   const std::string stem = path.stem().string();
-  const std::string folder = std::filesystem::absolute(path).parent_path().filename().string();
-  return stem == "results" && !folder.empty() ? folder : stem;
+  if (stem != "results") return stem;
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  if (const std::string name = noted_name(folder); !name.empty()) return name;
+  return folder.filename().empty() ? stem : folder.filename().string();
 }
 
 }  // namespace

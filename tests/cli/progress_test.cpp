@@ -93,6 +93,15 @@ TEST_F(ProgressLine, AnInterruptedVerificationEndsWithItsVerdict) {
   EXPECT_TRUE(names_in(folder_.file("failures")).empty());
 }
 
+/// The terminal of this test has 80 columns, less than the longest names of rows.
+TEST_F(ProgressLine, TellsTheTimeLeftOfAStudyBeforeLongNames) {
+  RunningProgram program =
+      start({"study", "parameters", "--only", "Random1000", "--rays", "20000", "--out", folder_.file("study")});
+  EXPECT_TRUE(terminal_.wait_for(" left, Random1000 p", program)) << terminal_.read();
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait(), 130);
+}
+
 // Takes seconds.
 const std::vector<std::string> kCompare{
     "compare", "procedural:city?size=30", "--recipes", "SAH+LSPH", "--rays", "5000", "--threads", "1"};

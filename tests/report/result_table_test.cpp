@@ -38,8 +38,15 @@ TEST_F(ResultsFile, IsReadWithQuotesByteOrderMarkAndEitherLineEnd) {
   EXPECT_EQ(table.study, "mine");
 }
 
-TEST_F(ResultsFile, HasTheNameOfItsFolderOrItsRows) {
+TEST_F(ResultsFile, HasTheNameOfItsRowsOrStudyOrFolder) {
   EXPECT_EQ(load_results(write("corrected/results.csv", "combo,pruned_cost\na,1\n")).study, "corrected");
+  write("s/study.txt", "# raygrain-study 1 my own study 1234567\n");
+  EXPECT_EQ(load_results(write("s/results.csv", "combo,pruned_cost\na,1\n")).study, "my own study");
+  EXPECT_EQ(load_results(write("s/x.csv", "combo,pruned_cost\na,1\n")).study, "x");
+  for (const char* foreign : {"", "hello", "# raygrain-study 1 ", "# raygrain-study 1 x"}) {
+    write("s/study.txt", foreign);
+    EXPECT_EQ(load_results(write("s/results.csv", "combo,pruned_cost\na,1\n")).study, "s") << foreign;
+  }
   EXPECT_EQ(load_results(write("x.csv", "study,combo,pruned_cost\npaper,a,1\n")).study, "paper");
 }
 
