@@ -67,10 +67,11 @@ enum class Verdict {
   kConfirms,
   kPartly,
   kContradicts,
-  kExtends,  // the paper has no such experiment
-  kMissing,  // the files hold nothing to judge by
+  kExtends,       // the paper has no such experiment
+  kIncomparable,  // measured, but not on what the paper's values are of
+  kMissing,       // the files hold nothing to judge by
 };
-/// "confirms", "partly confirms", "contradicts", "goes beyond the paper", "not measured".
+/// "confirms", "partly confirms", "contradicts", "goes beyond the paper", "not comparable", "not measured".
 const char* name(Verdict verdict);
 
 /// One figure or table: panels, the one that shows what users pay first, and one sentence.

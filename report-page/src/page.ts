@@ -3,7 +3,7 @@ import { element } from './dom';
 import { PanelView } from './panel_view';
 import type { Chart, Report, Section, Verdict } from './report';
 
-const SIGNS: Record<Verdict, string> = { confirms: '✓', partly: '≈', contradicts: '✗', extends: '+', missing: '–' };
+const SIGNS: Record<Verdict, string> = { confirms: '✓', partly: '≈', contradicts: '✗', extends: '+', incomparable: '?', missing: '–' };
 
 function sign(chart: Chart): HTMLElement {
   return element('span', { class: `sign ${chart.verdict}`, title: chart.verdictText }, SIGNS[chart.verdict]);
@@ -32,7 +32,7 @@ function contents(report: Report): HTMLElement {
 function summary(report: Report): HTMLElement {
   const box = element('section', { class: 'summary', 'aria-label': 'Summary' }, element('h2', {}, 'What came out'));
   for (const section of report.sections) {
-    const judged = section.charts.filter((chart) => chart.verdict !== 'extends' && chart.verdict !== 'missing');
+    const judged = section.charts.filter((chart) => ['confirms', 'partly', 'contradicts'].includes(chart.verdict));
     const count = (verdict: Verdict) => judged.filter((chart) => chart.verdict === verdict).length;
     const tally =
       judged.length === 0

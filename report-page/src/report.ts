@@ -1,7 +1,7 @@
 // What `raygrain report` puts into the page: the structures of include/raygrain/chart.h and study_report.h as JSON.
 
 export type PanelKind = 'bars' | 'ranking' | 'dots' | 'points' | 'lines' | 'matrix';
-export type Verdict = 'confirms' | 'partly' | 'contradicts' | 'extends' | 'missing';
+export type Verdict = 'confirms' | 'partly' | 'contradicts' | 'extends' | 'incomparable' | 'missing';
 
 export interface Point {
   series: string;

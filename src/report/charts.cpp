@@ -98,6 +98,11 @@ std::string scenes_note(std::span<const ResultRow> rows) {
                      count, kPaperScenes.size());
 }
 
+std::string scenes_sentence(std::span<const ResultRow> rows) {
+  return fmt::format(" It rests on {}, {} of the paper's {}.", counted(scene_names(rows).size(), "scene"),
+                     paper_scene_count(rows, kPaperScenes.size()), kPaperScenes.size());
+}
+
 std::vector<std::string> own_recipes(const StudyResults& study) {
   std::vector<std::string> recipes = distinct(study.rows, [](const ResultRow& row) { return row.recipe; });
   std::erase_if(recipes, [](const std::string& recipe) { return recipe.empty() || is_paper_recipe(recipe); });
@@ -237,6 +242,8 @@ const char* name(Verdict verdict) {
       return "contradicts";
     case Verdict::kExtends:
       return "goes beyond the paper";
+    case Verdict::kIncomparable:
+      return "not comparable";
     case Verdict::kMissing:
       return "not measured";
   }

@@ -90,6 +90,9 @@ size_t paper_scene_count(std::span<const ResultRow> rows, size_t count);
 /// "5 of the paper's 8 scenes were measured ..."; empty where all were.
 std::string scenes_note(std::span<const ResultRow> rows);
 
+/// " It rests on 5 scenes, 5 of the paper's 8.": the end of a finding.
+std::string scenes_sentence(std::span<const ResultRow> rows);
+
 /// A chart over a number: means of `value` over the rows of each series at each x.
 ChartPanel line_panel(std::span<const ResultRow> rows, const std::string& title, const RowText& series,
                       const std::pair<ChartAxis, RowValue>& x, const std::pair<ChartAxis, RowValue>& y);

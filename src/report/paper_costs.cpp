@@ -97,13 +97,18 @@ std::vector<std::string> figure_recipes(const StudyResults& study, const CostFig
 
 std::string finding(const StudyResults& study, const CostFigure& figure, const Agreement& agreement, bool six) {
   const std::string users = user_sentence(study, std::string(figure.recipe), std::string(kBaseline));
-  return fmt::format(
-      "{}{}y the paper's full-traversal cost{} {} is cheaper than {} in {} of {} groups, where the paper found {}: the "
-      "two "
-      "agree on {} of {}.",
-      users.empty() ? "" : "With " + std::string(figure.recipe) + " " + users + "; ", users.empty() ? "B" : "b",
-      six ? ", over the six scenes with the authors' own models," : "", figure.recipe, kBaseline, agreement.cheaper,
-      agreement.groups, agreement.published_cheaper, agreement.agreeing, agreement.groups);
+  std::string text =
+      fmt::format("{}{}y the paper's full-traversal cost{} {} is cheaper than {} in {} of {} groups",
+                  users.empty() ? "" : "With " + std::string(figure.recipe) + " " + users + "; ",
+                  users.empty() ? "B" : "b", six ? ", over the six scenes with the authors' own models," : "",
+                  figure.recipe, kBaseline, agreement.cheaper, agreement.groups);
+  if (!six)
+    return text + fmt::format(
+                      ": not comparable with the paper, since only {} of the {} models that are the authors' own "
+                      "were measured.",
+                      paper_scene_count(study.rows, kOwnModels), kOwnModels);
+  return text + fmt::format(", where the paper found {}: the two agree on {} of {}.", agreement.published_cheaper,
+                            agreement.agreeing, agreement.groups);
 }
 
 void add_notes(Chart& chart, const StudyResults& study, const CostFigure& figure) {
@@ -142,10 +147,10 @@ Chart cost_figure(const StudyResults& study, const CostFigure& figure) {
                                       &PublishedCost::six_scenes, "authors' raw results, mean of 6 scenes"));
     chart.notes.push_back(distance_note(chart.panels.back(), "the six scenes whose models are the authors' own"));
   }
-  // Only the same models can be held against the paper; without them, what there is.
+  // Only the same models can be held against the paper.
   const Agreement agreement = compare_groups(chart.panels.back(), figure,
                                              comparable ? &PublishedCost::six_scenes : &PublishedCost::eight_scenes);
-  chart.verdict = verdict_of(agreement.agreeing, agreement.groups);
+  chart.verdict = comparable ? verdict_of(agreement.agreeing, agreement.groups) : Verdict::kIncomparable;
   chart.finding = finding(study, figure, agreement, comparable);
   std::erase(chart.notes, std::string{});
   add_notes(chart, study, figure);

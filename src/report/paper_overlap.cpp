@@ -90,6 +90,7 @@ Chart overlap_cost_figure(const StudyResults& study) {
       points.size(), kFull, real, kOverlapCorrelation,
       std::isnan(pruned) ? "not been measured" : fmt::format("{:.2f}", pruned), within.correlation,
       within.significant ? "" : ", which may be chance");
+  chart.finding += scenes_sentence(full);
   chart.notes.emplace_back(
       "Confirmed where the correlation is significant (95 %) over all tests and, with each scene's means of overlap "
       "and "
@@ -150,6 +151,7 @@ Chart overlap_figure(const StudyResults& study) {
       "and "
       "most of all for {}{}.",
       percent(full), kFull, percent(standard), kBaseline, less, groups, least_group, users.empty() ? "" : "; " + users);
+  chart.finding += scenes_sentence(study.rows);
   chart.notes.emplace_back(
       "Published marks are means of the authors' raw results; the printed figure differs from them by up to 10 % and "
       "is "

@@ -100,6 +100,7 @@ Chart prediction_figure(const StudyResults& study) {
       "the "
       "paper gives 2 % and 12 %.",
       percent(mean_of(rows, paid_of("estimated_pah"))), agreeing, groups, percent(plane), percent(point));
+  chart.finding += scenes_sentence(rows);
   chart.notes.emplace_back(
       "Three statements are judged: PAH is better in every group, and its two mean errors, each of which agrees with "
       "the paper's within a factor of two.");

@@ -16,7 +16,7 @@ Json number(double value) {
 
 /// Names in the order of ChartKind and Verdict.
 constexpr const char* kKinds[] = {"bars", "ranking", "dots", "points", "lines", "matrix"};
-constexpr const char* kVerdicts[] = {"confirms", "partly", "contradicts", "extends", "missing"};
+constexpr const char* kVerdicts[] = {"confirms", "partly", "contradicts", "extends", "incomparable", "missing"};
 
 Json points_json(const std::vector<ChartPoint>& points) {
   Json list = Json::array();

@@ -105,7 +105,7 @@ TEST(StudyReport, HoldsWithoutTimesAndWithFewScenes) {
   const StudyReport report = report_of(table);
   EXPECT_EQ(chart_of(report, "Figure 19").verdict, Verdict::kMissing);
   EXPECT_FALSE(chart_of(report, "Figure 19").panels.empty()) << "the published times are still there";
-  EXPECT_EQ(chart_of(report, "Figure 16").verdict, Verdict::kConfirms);
+  EXPECT_EQ(chart_of(report, "Figure 16").verdict, Verdict::kIncomparable);
   EXPECT_NE(chart_of(report, "Figure 16").notes.at(0).find("1 of the paper's 8 scenes"), std::string::npos);
 }
 
@@ -128,6 +128,25 @@ TEST(StudyReport, SaysHowManyScenesWereMeasured) {
     EXPECT_EQ(notes(whole, label), 0) << label;
     EXPECT_EQ(notes(part, label), 1) << label;
   }
+}
+
+/// Costs of other models say nothing of the paper's.
+TEST(StudyReport, HoldsCostsAgainstThePaperOnTheSameModelsOnly) {
+  ResultTable table = paper_results();
+  std::erase_if(table.rows, [](const auto& row) { return row[0] == "Crowd" || row[0] == "Sponza"; });
+  EXPECT_EQ(chart_of(report_of(table), "Figure 18").verdict, Verdict::kConfirms) << "substitutes do not count";
+  std::erase_if(table.rows, [](const auto& row) { return row[0] == "Suzanne"; });
+  const StudyReport report = report_of(table);
+  for (const char* label : {"Figure 16", "Figure 17", "Figure 18"}) {
+    const Chart chart = chart_of(report, label);
+    EXPECT_EQ(chart.verdict, Verdict::kIncomparable) << label;
+    EXPECT_NE(chart.finding.find("not comparable with the paper, since only 5 of the 6"), std::string::npos)
+        << chart.finding;
+  }
+  for (const char* label : {"Figure 14", "Figure 20", "Figure 22"})
+    EXPECT_NE(chart_of(report, label).finding.find("rests on 5 scenes, 5 of the paper's 8."), std::string::npos)
+        << chart_of(report, label).finding;
+  EXPECT_NE(study_report_json(report).find("\"incomparable\""), std::string::npos);
 }
 
 /// Figure 14 has three statements: better everywhere, 2 % for planes, 12 % for points.
