@@ -117,6 +117,9 @@ struct StudyScene {
   std::function<TriangleMesh()> load;
   std::vector<StudyArea> areas;
   double weight = 1;  // about how many triangles, compared with the other scenes: for the progress
+  /// Stands for the model, whose numbers decide those of the rows, as a checksum does: a run resumes only where it is
+  /// the same.
+  std::string content = {};
 };
 
 /// A tree to build. `combo` and `setting` are its names in the rows.

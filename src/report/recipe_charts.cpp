@@ -27,6 +27,8 @@ std::vector<Payment> payments(const StudyResults& study) {
   std::vector<Payment> all{
       {"What users pay: pruned cost", "pruned cost", "#d9480f", column_value("pruned_cost")},
       {"What users pay: time", "time per ray", "#2f9e44", nanoseconds_per_ray},
+      {"What users pay: time, rays one at a time", "time per ray, one at a time", "#66a80f",
+       column_value("single_ray_seconds")},
       {"The paper's full-traversal cost", "full-traversal cost (the paper's)", "#868e96", column_value("real_cost")}};
   std::erase_if(all, [&](const Payment& payment) { return !any_measured(study.rows, payment.value); });
   return all;
@@ -78,6 +80,14 @@ Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
       chart.finding += fmt::format(" In time {} is best: {} times that of {}.", timed.front().recipe,
                                    short_number(timed.front().ratio.mean), baseline);
   if (const std::string note = left_out_note(blocks); !note.empty()) chart.notes.push_back(note);
+  const auto is_single = [](const ResultRow& row) {
+    return !std::isnan(row.number("single_ray_seconds")) && std::isnan(nanoseconds_per_ray(row));
+  };
+  if (std::any_of(study.rows.begin(), study.rows.end(), is_single))
+    chart.notes.emplace_back(
+        "Trees in ray space are searched one ray at a time, where other trees take arrays of rays: only times of rays "
+        "one "
+        "at a time can be held against each other.");
   return chart;
 }
 

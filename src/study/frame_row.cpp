@@ -157,7 +157,7 @@ void set_frame_times(Cells& cells, const FrameLocal& best, const TreeTest& test,
   const FrameTree wide(best.frame, *best.local.tree, corners, {.measure = best.measure});
   const std::vector<Ray> served = served_rays(test);
   std::vector<Hit> hits(served.size());
-  cells.set("ray_seconds", search_seconds(served, [&](std::span<const Ray> rays) {
+  cells.set("single_ray_seconds", search_seconds(served, [&](std::span<const Ray> rays) {
               for (size_t i = 0; i < rays.size(); ++i) hits[i] = wide.intersect(rays[i]).value_or(Hit{});
             }));
   cells.set("global_ray_seconds",

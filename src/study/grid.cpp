@@ -16,6 +16,7 @@
 #include "study/frame_row.h"
 #include "study/names.h"
 #include "study/scene_pool.h"
+#include "study/sources.h"
 #include "study/tree_row.h"
 
 namespace raygrain {
@@ -189,6 +190,7 @@ std::string identity_of(const StudyGrid& grid) {
     put(text, recipe.recipe);
     for (const bool flag : {recipe.reinsert, recipe.in_frame, recipe.visible}) text += flag ? " yes" : " no";
   }
+  text += study::contents_of(grid.scenes);
   for (const StudyScene& scene : grid.scenes)
     for (const StudyArea& area : scene.areas) put(text, area.area);
   put(text, {grid.costs.inner, grid.costs.triangle});

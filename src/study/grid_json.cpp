@@ -81,6 +81,7 @@ StudyScene read_own_scene(const JsonReader& item, const StudySources& sources) {
                     [path, scale] { return study::load_scaled(path, scale); },
                     {},
                     static_cast<double>(scene.mesh.triangle_count()) / 1000};
+  result.content = study::content_of(scene.mesh);
   if (const auto name = item.find("name")) result.name = name_in(*name);
   std::vector<InfluenceArea> areas = scene.areas;
   if (const auto own = item.find("areas"))
@@ -183,7 +184,7 @@ StudyGrid read_grid(const std::string& path, const StudySources& sources) {
   check_format(file);
   StudyGrid grid;
   grid.name = name_in(file.at("name"));
-  grid.source = text + sources.scenes;
+  grid.source = text;
   if (const auto measures = file.find("measures"))
     for (const JsonReader& item : measures->items())
       grid.registry.measures.push_back(read_measure(item, grid.registry));

@@ -152,6 +152,7 @@ Study areas_study(const StudySources& sources) {
   sponza.only = {"Sponza"};
   if (is_wanted(sources, "Sponza") && !sources.quick)
     for (const StudyScene& scene : paper_scenes(sponza, study.missing)) scenes.push_back(scene);
+  study.identity += contents_of(scenes);
   for (const StudyScene& scene : scenes) {
     if (!is_wanted(sources, scene.name)) continue;
     const auto trees = std::make_shared<LazyScene>([load = scene.load] {

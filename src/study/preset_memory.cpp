@@ -92,7 +92,9 @@ std::vector<std::string> run_example(int areas, double published) {
 
 Study memory_study(const StudySources& sources) {
   Study study{"memory", columns(), {}, "", {}};
-  for (const StudyScene& scene : paper_scenes(sources, study.missing)) {
+  const std::vector<StudyScene> scenes = paper_scenes(sources, study.missing);
+  study.identity += contents_of(scenes);
+  for (const StudyScene& scene : scenes) {
     const auto trees = std::make_shared<LazyScene>([load = scene.load] {
       TriangleMesh mesh = load();
       Bvh global = build_global_tree(mesh, {"SAH", "LSPH", "paper", {}}, default_registry());

@@ -130,7 +130,9 @@ std::vector<std::string> run_row(const Everything& all, double foreign, size_t c
 Study stress_study(const StudySources& sources) {
   Study study{"stress", columns(), {}, "rays " + std::to_string(sources.rays), {}};
   const Registry registry = default_registry();
-  for (const StudyScene& scene : paper_scenes(sources, study.missing)) {
+  const std::vector<StudyScene> scenes = paper_scenes(sources, study.missing);
+  study.identity += contents_of(scenes);
+  for (const StudyScene& scene : scenes) {
     const auto trees = std::make_shared<LazyScene>([load = scene.load] {
       TriangleMesh mesh = load();
       Bvh global = build_global_tree(mesh, {"SAH", "ALL", "binned", {}}, default_registry());

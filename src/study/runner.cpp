@@ -24,7 +24,7 @@ void check_study(const Study& study) {
     const StudyKey& key = task.key;
     if (!keys.insert(key).second)
       throw Error(ErrorCode::kUsage, study.name, "two rows have one key: " + describe(key),
-                  "Give each recipe its own combo or setting");
+                  "Give each recipe its own combo or setting, and each ray set and seed once");
     for (const std::string& name : {study.name, key.scene, key.kind, key.variant, key.combo, key.setting, key.ray_set})
       if (!is_plain_name(name))
         throw Error(ErrorCode::kUsage, study.name, "a name of row " + describe(key) + " has control characters",

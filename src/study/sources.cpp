@@ -7,6 +7,8 @@
 #include "raygrain/io.h"
 
 #include "base/nearest_name.h"
+#include "io/crc32.h"
+#include "io/text.h"
 #include "study/paper_experiments.h"
 
 namespace raygrain::study {
@@ -42,6 +44,26 @@ bool is_wanted(const StudySources& sources, const std::string& scene) {
 
 bool is_large(const StudyScene& scene) {
   return scene.weight > kLargeWeight;
+}
+
+std::string content_of_file(const std::string& path) {
+  const std::string bytes = read_whole_file(path);
+  return std::to_string(bytes.size()) + ' ' + std::to_string(crc32(bytes));
+}
+
+std::string content_of(const TriangleMesh& mesh) {
+  const auto bytes_of = [](const auto& values) {
+    return std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
+  };
+  return std::to_string(mesh.triangle_count()) + ' ' + std::to_string(crc32(bytes_of(mesh.vertices))) + ' ' +
+         std::to_string(crc32(bytes_of(mesh.triangles)));
+}
+
+std::string contents_of(const std::vector<StudyScene>& scenes) {
+  std::string text;
+  for (const StudyScene& scene : scenes)
+    if (!scene.content.empty()) text += ' ' + scene.name + ' ' + scene.content;
+  return text;
 }
 
 TriangleMesh load_scaled(const std::string& path, float scale) {
@@ -87,7 +109,8 @@ std::vector<StudyScene> paper_scenes(const StudySources& sources, std::vector<st
       scenes.push_back({name,
                         [path, scale = experiment.scale] { return load_scaled(path, scale); },
                         {},
-                        weight_of(experiment.scene)});
+                        weight_of(experiment.scene),
+                        is_file ? content_of_file(path) : std::string{}});
     const std::string variant(experiment.variant);
     scenes.back().areas.push_back({variant, InfluenceArea{variant, experiment.shape}});
   }

@@ -20,6 +20,12 @@ StudyScene procedural_scene(const std::string& text, const std::string& name);
 /// The mesh of a source ("procedural:..." or a file), each vertex times `scale`.
 TriangleMesh load_scaled(const std::string& path, float scale);
 
+/// Size and checksum of a file, or of a mesh: tells models apart.
+std::string content_of_file(const std::string& path);
+std::string content_of(const TriangleMesh& mesh);
+/// Of all these scenes.
+std::string contents_of(const std::vector<StudyScene>& scenes);
+
 /// Throws Error (kUsage) for what in `sources.only` is none of the names.
 void check_wanted(const StudySources& sources, const std::vector<std::string_view>& names);
 

@@ -105,6 +105,9 @@ void set_tree_cells(Cells& cells, const TreeTest& test, const RayMeasure& own) {
   std::vector<Hit> hits(served.size());
   const WideBvh wide(*test.local.tree, test.scene.mesh, {.measure = own, .threads = 1});
   cells.set("ray_seconds", search_seconds(served, [&](std::span<const Ray> rays) { wide.intersect(rays, hits); }));
+  cells.set("single_ray_seconds", search_seconds(served, [&](std::span<const Ray> rays) {
+              for (size_t i = 0; i < rays.size(); ++i) hits[i] = wide.intersect(rays[i]);
+            }));
   cells.set("global_ray_seconds",
             search_seconds(served, [&](std::span<const Ray> rays) { test.scene.wide_global.intersect(rays, hits); }));
 }
@@ -176,6 +179,7 @@ std::vector<StudyColumn> grid_columns() {
           {"orientation_seconds", false},
           {"candidate_seconds", false},
           {"ray_seconds", false},
+          {"single_ray_seconds", false},
           {"global_ray_seconds", false}};
 }
 
