@@ -28,6 +28,7 @@ struct Options {
   CommonOptions common;
   std::vector<std::string> results, views;
   std::string page, markdown, page_template;
+  StudyReportOptions shown;
   bool plain = false;
 };
 
@@ -126,7 +127,7 @@ int make_report(const Options& options) {
   check_views(options.views);
   std::vector<ResultTable> tables;
   for (const std::string& path : options.results) tables.push_back(load_results(results_file(path)));
-  const StudyReport report = make_study_report(tables);
+  const StudyReport report = make_study_report(tables, options.shown);
 
   Progress progress(!options.common.quiet);
   std::string note;
@@ -150,6 +151,9 @@ Action declare_report(Arguments& arguments) {
   arguments.output("--out", "report.html", options->page, "Write the report as one self-contained page");
   arguments.output("--markdown", "FILE", options->markdown,
                    "Write it as Markdown, too, with PNG charts in a folder beside the file");
+  arguments.list("--only", "SCENE,...", options->shown.scenes, "Tests in these scenes alone");
+  arguments.text("--baseline", "RECIPE", options->shown.baseline,
+                 "Hold recipes against this one, named as in the report [SAH+LSPH]");
   arguments.files("--views", "FILE,...", options->views, "Link these pages of raygrain view");
   arguments.flag("--static", options->plain, "Make the page without scripts: SVG charts only");
   arguments.file("--template", "FILE", options->page_template,

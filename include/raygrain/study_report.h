@@ -38,9 +38,14 @@ struct StudyReport {
   std::vector<std::pair<std::string, std::string>> links = {};  // to pages that show what was measured: name, address
 };
 
+struct StudyReportOptions {
+  std::string baseline = {};  // the recipe, with its setting, that others are held against; empty: SAH+LSPH or near it
+  std::vector<std::string> scenes = {};  // rows of these alone; empty: all
+};
+
 /// Every chart that the tables hold values for. Recipes that raygrain does not know appear like its own. The same
-/// tables give the same report. Throws Error (kUsage) for no tables.
-StudyReport make_study_report(std::span<const ResultTable> tables);
+/// tables give the same report. Throws Error (kUsage) for no tables, and for a baseline or scene that none of them has.
+StudyReport make_study_report(std::span<const ResultTable> tables, const StudyReportOptions& options = {});
 
 /// The report as JSON for the interactive page: its structures, with NaN as null.
 std::string study_report_json(const StudyReport& report);

@@ -111,7 +111,8 @@ std::vector<std::string> own_recipes(const StudyResults& study) {
 
 std::string baseline_recipe(const StudyResults& study) {
   const std::vector<std::string> recipes = distinct(study.rows, [](const ResultRow& row) { return row.recipe; });
-  if (std::find(recipes.begin(), recipes.end(), kBaseline) != recipes.end()) return std::string(kBaseline);
+  for (const std::string& wanted : {study.baseline, std::string(kBaseline)})
+    if (!wanted.empty() && std::find(recipes.begin(), recipes.end(), wanted) != recipes.end()) return wanted;
   const auto near =
       std::find_if(recipes.begin(), recipes.end(), [](const std::string& r) { return r.starts_with(kBaseline); });
   if (near != recipes.end()) return *near;

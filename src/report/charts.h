@@ -15,6 +15,7 @@ namespace raygrain {
 struct StudyResults {
   std::string name, id;
   std::vector<ResultRow> rows;
+  std::string baseline = {};  // asked for; baseline_recipe() where it is not there
 };
 
 inline constexpr std::string_view kBaseline = "SAH+LSPH";
@@ -104,7 +105,8 @@ std::vector<ResultRow> main_rays(std::span<const ResultRow> rows);
 std::vector<std::string> own_recipes(const StudyResults& study);
 /// PAH+SPFH with the paper's own parameters; empty where it is not there.
 std::string default_recipe(const StudyResults& study);
-/// SAH+LSPH where it is there, else what looks most like it, PAH+SPFH with the paper's parameters, or any.
+/// The one that was asked for, SAH+LSPH where that is not there, else what looks most like it, PAH+SPFH with the
+/// paper's parameters, or any.
 std::string baseline_recipe(const StudyResults& study);
 
 /// Series with a colour each: a recipe of the paper has the same in every chart, the baseline is grey.

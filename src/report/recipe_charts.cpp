@@ -59,6 +59,20 @@ ChartPanel ranking_panel(const ComparedRecipes& block, const std::string& baseli
   return panel;
 }
 
+/// In how many tests each recipe is cheaper than the baseline.
+ChartTable win_table(const ComparedRecipes& block, const std::string& baseline, const std::vector<Payment>& paid) {
+  ChartTable table{{"recipe"}, {}};
+  for (const Payment& payment : paid) table.columns.push_back(std::string("less ") + payment.series);
+  for (const RankedRecipe& r : ranking(block.rows, baseline, paid.front().value)) {
+    std::vector<std::string>& cells = table.rows.emplace_back(1, r.recipe);
+    for (const Payment& payment : paid) {
+      const PairedRatio ratio = paired_ratio(block.rows, r.recipe, baseline, payment.value);
+      cells.push_back(ratio.count == 0 ? "-" : fmt::format("in {} of {}", ratio.less, counted(ratio.count, "test")));
+    }
+  }
+  return table;
+}
+
 Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
   Chart chart{.title = "All recipes against " + baseline};
   const std::vector<Payment> paid = payments(study);
@@ -67,6 +81,7 @@ Chart ranking_chart(const StudyResults& study, const std::string& baseline) {
   if (blocks.empty()) return chart;
   for (const ComparedRecipes& block : blocks) chart.panels.push_back(ranking_panel(block, baseline, paid));
   const std::vector<RankedRecipe> ranked = ranking(blocks.front().rows, baseline, paid.front().value);
+  chart.table = win_table(blocks.front(), baseline, paid);
   const RankedRecipe& best = ranked.front();
   chart.finding =
       best.recipe == baseline
@@ -219,7 +234,7 @@ Chart build_chart(const StudyResults& study, const std::string& baseline) {
 
 std::vector<Chart> recipe_charts(const StudyResults& all) {
   if (recipe_names(all.rows).size() < 2) return {};
-  const StudyResults study{all.name, all.id, main_rays(all.rows)};
+  const StudyResults study{all.name, all.id, main_rays(all.rows), all.baseline};
   const std::string baseline = baseline_recipe(study);
   std::vector<Chart> charts{ranking_chart(study, baseline), fallback_chart(study, baseline)};
   const auto add = [&](const char* title, const RowText& group, const std::vector<std::string>& groups) {

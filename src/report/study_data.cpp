@@ -153,6 +153,7 @@ PairedRatio paired_ratio(std::span<const ResultRow> rows, std::string_view recip
     result.low = result.count == 0 ? ratio : std::min(result.low, ratio);
     result.high = result.count == 0 ? ratio : std::max(result.high, ratio);
     ++result.count;
+    result.less += ratio < 1;
   }
   if (result.count > 0) result.mean = std::exp(sum / static_cast<double>(result.count));
   return result;

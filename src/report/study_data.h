@@ -57,7 +57,7 @@ std::string test_key(const ResultRow& row);
 struct PairedRatio {
   double mean = kNotMeasured;  // geometric mean of recipe / baseline
   double low = kNotMeasured, high = kNotMeasured;
-  size_t count = 0;
+  size_t count = 0, less = 0;  // tests; those in which the recipe has less than the baseline
 };
 PairedRatio paired_ratio(std::span<const ResultRow> rows, std::string_view recipe, std::string_view baseline,
                          const RowValue& value);

@@ -8,6 +8,7 @@
 
 #include "raygrain/error.h"
 
+#include "base/nearest_name.h"
 #include "report/charts.h"
 
 namespace raygrain {
@@ -44,10 +45,31 @@ std::ptrdiff_t rank(std::string_view name) {
   return known ? known - kKnownStudies.data() : static_cast<std::ptrdiff_t>(kKnownStudies.size());
 }
 
+/// Names that no row has would leave nothing to show, or something else than was asked for.
+void check_known(std::string_view name, const std::vector<StudyResults>& studies, const char* what,
+                 std::string ResultRow::*field) {
+  std::vector<std::string> names;
+  for (const StudyResults& study : studies)
+    for (const std::string& known : distinct(study.rows, [&](const ResultRow& row) { return row.*field; }))
+      names.push_back(known);
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  throw Error(ErrorCode::kUsage, std::string(name), std::string("is no ") + what + " of these results",
+              suggestion(name, std::vector<std::string_view>(names.begin(), names.end())));
+}
+
 /// Studies in the order of the report, with ids that differ.
-std::vector<StudyResults> make_studies(std::span<const ResultTable> tables) {
+std::vector<StudyResults> make_studies(std::span<const ResultTable> tables, const StudyReportOptions& options) {
   std::vector<StudyResults> studies;
-  for (const ResultTable& table : tables) studies.push_back({table.study, id_of(table.study), study_rows(table)});
+  for (const ResultTable& table : tables)
+    studies.push_back({table.study, id_of(table.study), study_rows(table), options.baseline});
+  if (!options.baseline.empty()) check_known(options.baseline, studies, "recipe", &ResultRow::recipe);
+  for (const std::string& scene : options.scenes) check_known(scene, studies, "scene", &ResultRow::scene);
+  const auto is_left_out = [&](const ResultRow& row) {
+    return std::find(options.scenes.begin(), options.scenes.end(), row.scene) == options.scenes.end();
+  };
+  if (!options.scenes.empty())
+    for (StudyResults& study : studies) std::erase_if(study.rows, is_left_out);
+  std::erase_if(studies, [](const StudyResults& study) { return study.rows.empty(); });
   std::stable_sort(studies.begin(), studies.end(),
                    [](const StudyResults& a, const StudyResults& b) { return rank(a.name) < rank(b.name); });
   std::set<std::string> used;
@@ -119,11 +141,11 @@ void add_facts(StudyReport& report, const StudyResults& study) {
 
 }  // namespace
 
-StudyReport make_study_report(std::span<const ResultTable> tables) {
+StudyReport make_study_report(std::span<const ResultTable> tables, const StudyReportOptions& options) {
   if (tables.empty()) throw Error(ErrorCode::kUsage, "report", "needs a results file", "Run raygrain study first");
   StudyReport report;
   report.title = "raygrain: what trees for known rays cost";
-  for (const StudyResults& study : make_studies(tables)) {
+  for (const StudyResults& study : make_studies(tables, options)) {
     add_facts(report, study);
     report.sections.push_back(section_of(study));
   }

@@ -119,6 +119,8 @@ TEST_F(ReportCommand, RefusesBadResultsAndWritesNothing) {
   expect_refusal({path("cut.csv"), "--out", out}, kData, "cut.csv:3: 2 cells");
   expect_refusal({path("text.csv"), "--out", out}, kData, "text.csv:2: \"cheap\" in column \"pruned_cost\"");
   expect_refusal({path("paper.csv"), path("text.csv"), "--out", out}, kData, "text.csv:2");
+  expect_refusal({path("paper.csv"), "--out", out, "--only", "Wod"}, kUsage, "Wod: is no scene of these results");
+  expect_refusal({path("paper.csv"), "--out", out, "--baseline", "MINE"}, kUsage, "MINE: is no recipe of these results");
   expect_refusal({path("paper.csv"), "--out", path("no/report.html")}, kData, "its folder does not exist");
   expect_refusal({path("paper.csv"), "--out", folder_.string()}, kData, "is a folder");
   expect_refusal({path("paper.csv"), "--markdown", path("no/report.md")}, kData, "its folder does not exist");

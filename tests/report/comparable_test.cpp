@@ -1,8 +1,10 @@
 // Own recipes beside a tuned one, and means over different tests, which say nothing of each other.
 #include <algorithm>
+#include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "raygrain/error.h"
 #include "raygrain/study_report.h"
 
 #include "paper_results.h"
@@ -34,7 +36,7 @@ class Table {
         {scene, "plane", "parallel", recipe, setting, text, text, text, t.quality, "1.3", "0.9", t.bins, t.levels});
   }
 
-  StudyReport report() const { return make_study_report({&table_, 1}); }
+  StudyReport report(const StudyReportOptions& options = {}) const { return make_study_report({&table_, 1}, options); }
 
  private:
   ResultTable table_;
@@ -146,6 +148,37 @@ TEST(Comparable, RecipesAreRankedOverTheSameTests) {
   EXPECT_NE(all.notes[0].find("QUARTER"), std::string::npos) << all.notes[0];
   const std::string building = chart_of(report, "What building costs").finding;
   EXPECT_TRUE(building.starts_with("Trees of HALF are built fastest (0.800 times")) << building;
+}
+
+/// What docs/study.md quotes: a ratio, and in how many tests it is a gain, over scenes and against a recipe of choice.
+TEST(Comparable, BaselineAndScenesAreOfChoice) {
+  Table table;
+  for (const char* scene : {"Wood", "Suzanne", "Sponza"}) {
+    table.add(scene, "SAH+LSPH", "", 100);
+    table.add(scene, "SAH+ALL", "", 50);
+    table.add(scene, "PAH+ALL", "", scene[0] == 'W' ? 80 : scene[1] == 'u' ? 20 : 1);
+  }
+  const StudyReport report = table.report({.baseline = "SAH+ALL", .scenes = {"Wood", "Suzanne"}});
+  const Chart chart = chart_of(report, "All recipes against SAH+ALL");
+  EXPECT_NEAR(value_of(chart.panels.at(0).measured, "pruned cost", "PAH+ALL"), 0.8, 1e-6);
+  ASSERT_EQ(chart.table.rows.size(), 3u);
+  EXPECT_EQ(chart.table.rows[0][0], "PAH+ALL");
+  EXPECT_EQ(chart.table.rows[0][1], "in 1 of 2 tests");
+  const auto none = [](const Chart&, size_t) { return std::string{}; };
+  EXPECT_NE(report_markdown(report, none).find("| PAH+ALL | in 1 of 2 tests |"), std::string::npos);
+  EXPECT_THROW(table.report({.baseline = "SAH+ALLL"}), Error);
+  EXPECT_THROW(table.report({.scenes = {"Crowd"}}), Error);
+}
+
+/// Trees in ray space take one ray at a time; times of arrays are not held against theirs.
+TEST(Comparable, TimesAreOfRaysSearchedTheSameWay) {
+  ResultTable table{"mine", "", {"scene", "recipe", "pruned_cost", "ray_seconds", "single_ray_seconds"}, {}};
+  table.rows = {{"a", "SAH+LSPH", "4", "1e-7", "4e-7"}, {"a", "IN FRAME", "2", "", "2e-7"}};
+  const Chart chart = chart_of(make_study_report({&table, 1}), "All recipes against SAH+LSPH");
+  EXPECT_TRUE(std::isnan(value_of(chart.panels.at(0).measured, "time per ray", "IN FRAME")));
+  EXPECT_NEAR(value_of(chart.panels.at(0).measured, "time per ray, one at a time", "IN FRAME"), 0.5, 1e-9);
+  ASSERT_EQ(chart.notes.size(), 1u);
+  EXPECT_NE(chart.notes[0].find("one ray at a time"), std::string::npos);
 }
 
 TEST(Comparable, TheFallbackIsJudgedOverTheSameTests) {

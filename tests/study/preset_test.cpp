@@ -39,6 +39,13 @@ std::vector<Expectation> expectations() {
       {"corrected_shared", "corrected", {"Suzanne"}, 1000, true, true},
       {"paper_large", "paper", {"Crowd", "Sponza"}, 1000, false, true, true},
       {"corrected_full", "corrected", {}, 1000, false, true, true},
+      {"paper_rest", "paper", {"Wood", "CottageWalls"}, 1000, false, true, true},
+      {"published_large", "published", {"Crowd", "Sponza"}, 1000, false, true, true},
+      {"parameters_full", "parameters", {"Random100"}, 1000, false, false, true},
+      {"areas_full", "areas", {"City"}, 1000, false, false, true},
+      {"scaling_full", "scaling", {"City 8", "City 15", "City 30"}, 500, false, false, true},
+      {"memory_shared", "memory", {}, 1000, false, true, true},
+      {"stress_shared", "stress", {"Wood", "Suzanne", "Cottage", "CottageWalls"}, 500, false, true, true},
   };
 }
 
