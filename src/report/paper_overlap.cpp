@@ -13,10 +13,18 @@ namespace {
 constexpr std::string_view kFull = "PAH+SPFH";
 constexpr const char* kOverlapColumn = "overlap4_culled";
 
+/// A point per test: the means over its seeds and repeats, which are no tests of their own.
 std::vector<std::pair<double, double>> pairs_of(std::span<const ResultRow> rows, const char* x, const char* y) {
+  const std::vector<ResultRow> measured =
+      filtered(rows, [&](const ResultRow& row) { return !std::isnan(row.number(x)) && !std::isnan(row.number(y)); });
+  const auto test = [](const ResultRow& row) { return row.scene + '\n' + group_label(row); };
+  const auto means = [&](const char* column) {
+    return group_means(
+        measured, test, [](const ResultRow&) { return std::string{}; }, column_value(column));
+  };
+  const std::vector<ChartPoint> xs = means(x), ys = means(y);
   std::vector<std::pair<double, double>> points;
-  for (const ResultRow& row : rows)
-    if (!std::isnan(row.number(x)) && !std::isnan(row.number(y))) points.emplace_back(row.number(x), row.number(y));
+  for (size_t i = 0; i < xs.size(); ++i) points.emplace_back(xs[i].y, ys[i].y);
   return points;
 }
 

@@ -65,8 +65,9 @@ Chart split_time_figure(const StudyResults& study) {
   const PairedRatio ratio = paired_ratio(study.rows, kFacing, kBaseline, choosing);
   if (!timed || ratio.count == 0) {
     chart.finding =
-        "These files hold no times of choosing orientations, so the paper's statement that SPFH takes as long as LSPH "
-        "is not judged.";
+        fmt::format("These files hold no {}, so the paper's statement that SPFH takes as long as LSPH is not judged.",
+                    timed ? fmt::format("times of tests that both {} and {} have", kFacing, kBaseline)
+                          : "times of choosing orientations");
     return chart;
   }
   chart.verdict = std::abs(std::log(ratio.mean)) < std::log1p(kSameTime) ? Verdict::kConfirms : Verdict::kContradicts;

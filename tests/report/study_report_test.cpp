@@ -188,6 +188,29 @@ TEST(StudyReport, JudgesOverlapWithinScenes) {
   EXPECT_EQ(chart_of(report_of(table), "Figure 20").verdict, Verdict::kContradicts);
 }
 
+/// Seeds of one test are no tests more.
+TEST(StudyReport, OverlapIsCountedTestByTest) {
+  const std::string once = chart_of(report_of(paper_results()), "Figure 20").finding;
+  ResultTable table = paper_results();
+  table.columns.emplace_back("seed");
+  const auto rows = table.rows;
+  table.rows.clear();
+  for (const char* seed : {"1", "2", "3"})
+    for (std::vector<std::string> row : rows) {
+      row.emplace_back(seed);
+      table.rows.push_back(row);
+    }
+  EXPECT_EQ(chart_of(report_of(table), "Figure 20").finding, once);
+  EXPECT_TRUE(once.starts_with("Over 64 tests")) << once;
+}
+
+TEST(StudyReport, SaysWhichTimesOfChoosingAreMissing) {
+  ResultTable table = paper_results();
+  std::erase_if(table.rows, [](const auto& row) { return row[3] == "SAH+SPFH"; });
+  const std::string finding = chart_of(report_of(table), "Figure 19").finding;
+  EXPECT_NE(finding.find("hold no times of tests that both SAH+SPFH and SAH+LSPH have"), std::string::npos) << finding;
+}
+
 TEST(StudyReport, ShowsWhatTable2SaidWhereItWasNotMeasured) {
   const StudyReport report = report_of(paper_results());
   const Chart chart = chart_of(report, "Table 2");
