@@ -119,7 +119,7 @@ std::string baseline_recipe(const StudyResults& study) {
   const auto standard =
       std::find_if(recipes.begin(), recipes.end(), [](const std::string& r) { return r.starts_with("SAH+"); });
   if (standard != recipes.end()) return *standard;
-  if (const std::string tuned = default_recipe(study); !tuned.empty()) return tuned;
+  if (std::string tuned = default_recipe(study); !tuned.empty()) return tuned;
   return recipes.empty() ? std::string{} : recipes.front();
 }
 

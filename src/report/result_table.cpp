@@ -153,7 +153,7 @@ std::string study_name(const ResultTable& table) {
   const std::string stem = path.stem().string();
   if (stem != "results") return stem;
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  if (const std::string name = noted_name(folder); !name.empty()) return name;
+  if (std::string name = noted_name(folder); !name.empty()) return name;
   return folder.filename().empty() ? stem : folder.filename().string();
 }
 
