@@ -150,7 +150,7 @@ std::string study_name(const ResultTable& table) {
     if (!name.empty()) return name;
   }
   const std::filesystem::path path(table.path);
-  const std::string stem = path.stem().string();
+  std::string stem = path.stem().string();
   if (stem != "results") return stem;
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   if (std::string name = noted_name(folder); !name.empty()) return name;
