@@ -41,7 +41,7 @@ TEST(TriangleSmall, EqualsTheDefinitionWhereExponentsDiffer) {
   for (uint64_t i = 0; i < rounds; ++i) {
     const uint64_t bits = 1 + random.below(12), spread = random.below(40), ray_spread = random.below(100);
     const auto number = [&](uint64_t exponents) {
-      const auto mantissa = static_cast<float>(static_cast<int>(random.below(2 << bits)) - (1 << bits));
+      const auto mantissa = static_cast<float>(static_cast<int>(random.below(uint64_t{2} << bits)) - (1 << bits));
       return std::ldexp(mantissa, -static_cast<int>(random.below(exponents + 1)));
     };
     const auto point = [&](uint64_t exponents) {
