@@ -11,7 +11,6 @@
 
 namespace raygrain {
 
-/// What the walk reads, parallel by area.
 /// Can an area's direction suit a ray? Sure to say yes where is_direction_affine does, and cheap.
 class AxisTest {
  public:
@@ -28,6 +27,7 @@ class AxisTest {
   bool is_plane_;
 };
 
+/// What the walk reads, parallel by area.
 struct AreaTable {
   std::vector<AreaGeometry> geometries;
   std::vector<uint32_t> ranks;  // place in the order of predicted cost, ties by index
