@@ -10,6 +10,7 @@
 
 #include "trace/kernels/coverage-inl.h"
 #include "trace/kernels/coverage_kernels.h"
+#include "trace/kernels/coverage_single-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raygrain::HWY_NAMESPACE {

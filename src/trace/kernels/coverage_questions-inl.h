@@ -1,0 +1,199 @@
+// The two questions to a coverage grid, any hit and nearest hit: what a cell tells, and what its triangles do. Included
+// once per instruction set.
+#if defined(RAYGRAIN_TRACE_KERNELS_COVERAGE_QUESTIONS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef RAYGRAIN_TRACE_KERNELS_COVERAGE_QUESTIONS_INL_H
+#undef RAYGRAIN_TRACE_KERNELS_COVERAGE_QUESTIONS_INL_H
+#else
+#define RAYGRAIN_TRACE_KERNELS_COVERAGE_QUESTIONS_INL_H
+#endif
+
+#include <algorithm>
+#include <cmath>
+
+#include <hwy/cache_control.h>
+
+#include "raygrain/triangle.h"
+
+#include "trace/kernels/columns-inl.h"
+#include "trace/kernels/pairs-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace raygrain::HWY_NAMESPACE {
+namespace {
+
+/// A ray whose cell alone does not tell.
+struct Waiting {
+  float x, y, s;
+  uint32_t first, count;  // of its cell's references
+  uint32_t number;        // of the ray
+  uint32_t tile;
+  uint16_t code, spare;
+};
+static_assert(sizeof(Waiting) == 32);
+
+HWY_INLINE bool confirm(const CoverageGrid& grid, uint32_t id, const Ray& ray, Hit& hit) {
+  const TriangleMesh& mesh = *grid.mesh;
+  if (!intersect_triangle(ray, mesh.vertex(id, 0), mesh.vertex(id, 1), mesh.vertex(id, 2), hit)) return false;
+  hit.triangle = id;
+  return true;
+}
+
+/// Any triangle ahead of the column? asks(id) decides where margins do not.
+template <class Asks>
+HWY_INLINE bool meets_any(const CoverageGrid& grid, const Waiting& w, const Asks& asks, uint64_t& tests) {
+  const CoverageReference* reference = grid.references.data() + w.first;
+  const CoverageTriangle* triangles = grid.triangles.data();
+  const ColumnLanes column(w.x, w.y);
+  const auto depth = hn::Set(FourTag(), w.s);
+  const uint32_t count = w.count, code = w.code;
+  for (uint32_t i = 0; i < count; ++i) {
+    if (reference[i].top < code) break;
+    const CoverageTriangle& triangle = triangles[reference[i].triangle()];
+    const Four lanes = column.at(triangle, depth);
+    ++tests;
+    if (lanes.at_least(-triangle.margin) != 15) continue;
+    if (lanes.above(triangle.margin) == 15 || asks(triangle.id)) return true;
+  }
+  for (const uint32_t id : grid.near_triangles)
+    if (asks(id)) return true;
+  return false;
+}
+
+struct AnyHit {
+  const CoverageGrid& grid;
+  const ColumnBatch& batch;
+  uint8_t* flags;
+  CoverageCounters& counters;
+
+  /// True if the cell tells the answer.
+  HWY_INLINE bool decide(const CoverageCell& cell, uint16_t code, uint32_t number) const {
+    const bool is_hidden = code < cell.cover;
+    if (is_hidden || (code > cell.far && grid.near_triangles.empty())) {
+      flags[number] = is_hidden;
+      counters.covered += is_hidden;
+      counters.free += !is_hidden;
+      return true;
+    }
+    return false;
+  }
+  static constexpr bool kStartsOutside = false;
+
+  HWY_INLINE void answer(const Waiting& w) const { flags[w.number] = is_hit(w) ? 1 : 0; }
+
+  HWY_INLINE bool is_hit(const Waiting& w) const {
+    const auto asks = [&](uint32_t id) {
+      ++counters.confirmations;
+      Hit hit;
+      return confirm(grid, id, batch.rays[w.number], hit);
+    };
+    return meets_any(grid, w, asks, counters.triangle_tests);
+  }
+  HWY_INLINE void start(uint32_t) const {}
+  HWY_INLINE void miss(uint32_t number) const { flags[number] = 0; }
+  HWY_INLINE void finish() const {}
+};
+
+/// A cell's references.
+struct CellList {
+  uint32_t first, count, tile;
+};
+
+/// Calls tell(id) for triangles one of which a column that starts before all of them meets first, if any. Returns how
+/// many were looked at.
+template <class Tell>
+HWY_INLINE uint32_t first_hits(const CoverageGrid& grid, float x, float y, const CellList& list, const Tell& tell) {
+  struct Candidate {
+    uint32_t id;
+    float highest;
+  };
+  constexpr size_t kMostCandidates = 8;
+  const CoverageReference* reference = grid.references.data() + list.first;
+  const CoverageTriangle* triangles = grid.triangles.data();
+  const CoverageTile& tile = grid.tiles[list.tile];
+  const ColumnLanes column(x, y);
+  Candidate candidates[kMostCandidates];  // NOLINT: filled as far as size says
+  size_t size = 0;
+  float sure = -kInf;  // the first hit is not below this depth
+  int32_t sure_code = 0;
+  const auto tell_all = [&] {
+    for (size_t c = 0; c < size; ++c)
+      if (candidates[c].highest >= sure) tell(candidates[c].id);
+    size = 0;
+  };
+  uint32_t i = 0;
+  for (const uint32_t count = list.count; i < count; ++i) {
+    if (reference[i].top < sure_code) break;
+    const CoverageTriangle& triangle = triangles[reference[i].triangle()];
+    const Four lanes = column.at(triangle);
+    if ((lanes.at_least(-triangle.margin) & 7) != 7) continue;
+    float depth = kInf, radius = 0;
+    if (triangle.per_ahead > 0) {  // else it has no plane to speak of
+      depth = (triangle.a[3] * x + triangle.b[3] * y + triangle.c[3]) * triangle.per_ahead;
+      radius = 2 * triangle.margin * triangle.per_ahead;
+      if (depth + radius < sure) continue;
+      if (depth - radius > sure && (lanes.above(triangle.margin) & 7) == 7) {
+        sure = depth - radius;
+        sure_code = code_of(tile, sure) - 2;
+      }
+    }
+    if (size == kMostCandidates) tell_all();
+    hwy::Prefetch(grid.mesh->triangles.data() + triangle.id);
+    candidates[size++] = {triangle.id, depth + radius};
+  }
+  tell_all();
+  return i;
+}
+
+/// The first triangle of a column that starts before all of them.
+struct NearestHit {
+  const CoverageGrid& grid;
+  const ColumnBatch& batch;
+  Hit* hits;
+  CoverageCounters& counters;
+  Confirmations& confirmations;
+
+  static constexpr bool kStartsOutside = true;
+
+  HWY_INLINE void start(uint32_t number) const { hits[number] = {}; }
+  HWY_INLINE void miss(uint32_t number) const { hits[number] = {}; }
+
+  HWY_INLINE bool decide(const CoverageCell& cell, uint16_t, uint32_t) const {
+    if ((&cell)[1].first != cell.first || !grid.near_triangles.empty()) return false;
+    ++counters.free;
+    return true;
+  }
+
+  HWY_INLINE void answer(const Waiting& w) const {
+    for (const uint32_t id : grid.near_triangles) consider(id, w.number);
+    const auto tell = [&](uint32_t id) { consider(id, w.number); };
+    counters.triangle_tests += first_hits(grid, w.x, w.y, {w.first, w.count, w.tile}, tell);
+  }
+
+  HWY_INLINE void consider(uint32_t id, uint32_t number) const {
+    ++counters.confirmations;
+    if (confirmations.add(id, number)) finish();
+  }
+  void finish() const { confirmations.decide(*grid.mesh, hits); }
+};
+
+/// Answers waiting rays in order; what later ones will read is fetched meanwhile.
+template <class Question>
+HWY_INLINE void answer_all(const CoverageGrid& grid, const Question& question, const Waiting* waiting, size_t count) {
+  constexpr size_t kReferencesAhead = 12, kTrianglesAhead = 5;
+  for (size_t i = 0; i < count; ++i) {
+    if (i + kReferencesAhead < count) hwy::Prefetch(grid.references.data() + waiting[i + kReferencesAhead].first);
+    if (i + kTrianglesAhead < count) {
+      const Waiting& w = waiting[i + kTrianglesAhead];
+      const CoverageReference* reference = grid.references.data() + w.first;
+      for (uint32_t j = 0; j < std::min(w.count, 3u); ++j)
+        hwy::Prefetch(grid.triangles.data() + reference[j].triangle());
+    }
+    question.answer(waiting[i]);
+  }
+}
+
+}  // namespace
+}  // namespace raygrain::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
