@@ -144,8 +144,6 @@ struct TriangleFilter {
     found.possible = inside & (~steep | (early & late));
     for (uint32_t flat = found.possible & ~steep; flat != 0; flat &= flat - 1)
       found.earliest[std::countr_zero(flat)] = -std::numeric_limits<float>::infinity();
-    for (uint32_t flat = found.possible & ~steep; flat != 0; flat &= flat - 1)
-      found.earliest[std::countr_zero(flat)] = -std::numeric_limits<float>::infinity();
     // Strictly inside, and t surely in range.
     const uint32_t clear = ~(less_equal(lowest, error) & less_equal(below, highest));
     found.sure = found.possible & steep & clear & less_equal(earliest, first);
