@@ -3,24 +3,10 @@
 
 #include "raygrain/accelerator.h"
 
-#include "base/parallel.h"
 #include "build/estimate.h"
+#include "geometry/triangle_boxes.h"
 
 namespace raygrain {
-
-namespace {
-
-constexpr size_t kTrianglesPerTask = 16384;
-
-std::vector<Bounds> triangle_bounds(const TriangleMesh& mesh, const BuildRun& run) {
-  std::vector<Bounds> bounds(mesh.triangle_count());
-  parallel_for(bounds.size(), kTrianglesPerTask, run.threads, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) bounds[i] = raygrain::triangle_bounds(mesh, i);
-  });
-  return bounds;
-}
-
-}  // namespace
 
 std::vector<uint32_t> area_members(const TriangleMesh& mesh, const AreaGeometry& geometry, const MembershipRule& rule) {
   std::vector<uint32_t> members;
@@ -66,7 +52,7 @@ Bvh build_global_tree(const TriangleMesh& mesh, const Recipe& recipe, const Regi
                              }};
   const std::vector<Vec3> centroids =
       needs_centroids(recipe, registry) ? triangle_centroids(mesh) : std::vector<Vec3>{};
-  return build_tree(recipe, registry, input, triangle_bounds(mesh, run), centroids, log, run);
+  return build_tree(recipe, registry, input, triangle_boxes(mesh, run.threads), centroids, log, run);
 }
 
 }  // namespace raygrain

@@ -2,6 +2,9 @@
 
 #include "raygrain/error.h"
 
+#include "base/parallel.h"
+#include "geometry/triangle_boxes.h"
+
 namespace raygrain {
 
 Bounds triangle_bounds(const TriangleMesh& mesh, size_t triangle) {
@@ -16,10 +19,17 @@ Vec3 triangle_centroid(const TriangleMesh& mesh, size_t triangle) {
   return to_float(sum / 3.0);
 }
 
-std::vector<Bounds> triangle_bounds(const TriangleMesh& mesh) {
+std::vector<Bounds> triangle_boxes(const TriangleMesh& mesh, unsigned threads) {
+  constexpr size_t kTrianglesPerTask = 16384;
   std::vector<Bounds> boxes(mesh.triangle_count());
-  for (size_t i = 0; i < boxes.size(); ++i) boxes[i] = triangle_bounds(mesh, i);
+  parallel_for(boxes.size(), kTrianglesPerTask, threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) boxes[i] = triangle_bounds(mesh, i);
+  });
   return boxes;
+}
+
+std::vector<Bounds> triangle_bounds(const TriangleMesh& mesh) {
+  return triangle_boxes(mesh, 1);
 }
 
 std::vector<Vec3> triangle_centroids(const TriangleMesh& mesh) {
