@@ -78,7 +78,7 @@ struct BoxFilter {
 
  private:
   static float relative(float x, float center) {
-    return static_cast<float>(static_cast<double>(x) - static_cast<double>(center));
+    return x - center;
   }
 };
 
