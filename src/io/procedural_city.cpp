@@ -75,11 +75,22 @@ void add_lamp(MeshBuilder& builder, Vec3d foot, Vec3d towards_street) {
   builder.block({lamp - Vec3d{0.25, 0.1, 0.25}, lamp + Vec3d{0.25, 0.05, 0.25}}, kAllFaces);
 }
 
+// Where cars may be parked along an edge. Sums, not products: their rounding is part of what a seed makes.
+std::vector<double> parking_places(double lo, double hi) {
+  std::vector<double> places;
+  double place = lo + 4;
+  while (place < hi - 4) {
+    places.push_back(place);
+    place += 6;
+  }
+  return places;
+}
+
 // Cars parked along, and lamps standing at, two of the block's edges.
 void add_street_furniture(MeshBuilder& builder, Random& random, const Block& block) {
-  for (double x = block.lo.x + 4; x < block.hi.x - 4; x += 6)
+  for (const double x : parking_places(block.lo.x, block.hi.x))
     if (random.below(5) < 2) add_car(builder, {x, 0, block.lo.z - 1.4}, true);
-  for (double z = block.lo.z + 4; z < block.hi.z - 4; z += 6)
+  for (const double z : parking_places(block.lo.z, block.hi.z))
     if (random.below(5) < 2) add_car(builder, {block.lo.x - 1.4, 0, z}, false);
   const double middle_x = (block.lo.x + block.hi.x) / 2, middle_z = (block.lo.z + block.hi.z) / 2;
   add_lamp(builder, {middle_x, kKerb, block.lo.z + 0.6}, {0, 0, -1});

@@ -64,7 +64,7 @@ std::string area_text(const InfluenceArea& area) {
 
 // By its name where the scene has the very same area, in full otherwise.
 std::string area_reference(const InfluenceArea& area, const Scene& scene) {
-  const std::string text = area_text(area);
+  std::string text = area_text(area);
   for (const InfluenceArea& other : scene.areas)
     if (other.name == area.name) return area_text(other) == text ? json_text(area.name) : text;
   return text;

@@ -10,8 +10,8 @@ namespace raygrain {
 
 namespace {
 
-constexpr uint32_t kTextScale = 2;           // pixels per pixel of the font
-constexpr size_t kBytesPerLetter = 16 * 64;  // more than any letter has strokes
+constexpr uint32_t kTextScale = 2;                   // pixels per pixel of the font
+constexpr size_t kBytesPerLetter = size_t{16} * 64;  // more than any letter has strokes
 
 std::string printable(std::string text) {
   for (char& c : text)

@@ -38,6 +38,7 @@ struct Everything {
     mesh = std::make_shared<const TriangleMesh>(scene.mesh);
     global = std::make_shared<const Bvh>(scene.global);
     std::vector<LocalTree> locals;
+    locals.reserve(areas.size());
     for (const StudyArea& area : areas)
       locals.push_back(build_local_tree(*mesh, area.area, recipe, default_registry()));
     accelerator =

@@ -47,7 +47,7 @@ struct BoxFilter {
     const float padding = 8 * kRoundoff * size, least = 0x1p-40f * length;
     for (size_t axis = 0; axis < 3; ++axis) {
       // Without branches: signs are hard to predict.
-      const uint32_t backward = std::bit_cast<uint32_t>(direction[axis]) >> 31;
+      const size_t backward = std::bit_cast<uint32_t>(direction[axis]) >> 31;
       const float reciprocal = 1 / std::max(std::abs(direction[axis]), least);
       const float inverse_of_axis = std::copysign(reciprocal, direction[axis]);
       const float offset = -origin[axis] * inverse_of_axis, slack = padding * reciprocal;

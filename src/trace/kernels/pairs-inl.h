@@ -178,12 +178,12 @@ class Confirmations {
     return stored[0];
   }
 
-  const ColumnRays& rays_;
-  size_t common_row_;
-  Pair queue_[kQueue];  // NOLINT: filled as far as queued_
-  size_t queued_ = 0;
   alignas(64) float numbers_[16][kTogether];                      // NOLINT: corners, origin, direction, tmax
-  alignas(64) float t_[kTogether], u_[kTogether], v_[kTogether];  // NOLINT
+  alignas(32) float t_[kTogether], u_[kTogether], v_[kTogether];  // NOLINT
+  Pair queue_[kQueue];                                            // NOLINT: filled as far as queued_
+  size_t queued_ = 0;
+  size_t common_row_;
+  const ColumnRays& rays_;
 };
 
 }  // namespace

@@ -1,0 +1,141 @@
+#include "trace/coverage_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace raygrain {
+
+namespace {
+
+constexpr uint32_t kMostCellsAcross = 128;
+
+float code(const CoverageTile& tile, float s) {
+  return (s - tile.lowest) * tile.per_depth + kFirstCode;
+}
+
+}  // namespace
+
+void RowBuilder::build(uint32_t y, CoverageRow& row) {
+  for (uint32_t x = 0; x < grid_.tiles_x; ++x) build_tile(x, y, row);
+}
+
+void RowBuilder::build_tile(uint32_t tile_x, uint32_t tile_y, CoverageRow& row) {
+  const size_t number = size_t{tile_y} * grid_.tiles_x + tile_x;
+  const std::span<const uint32_t> ids = members_.of(number);
+  seen_.resize(ids.size());
+  for (size_t i = 0; i < ids.size(); ++i) look_at(grid_, members_.near_z, ids[i], seen_[i]);
+
+  CoverageTile& tile = grid_.tiles[number];
+  const double wanted = std::sqrt(density_.cells_per_triangle * static_cast<double>(seen_.size()));
+  tile.across = static_cast<uint32_t>(std::clamp(std::ceil(wanted), 1.0, static_cast<double>(kMostCellsAcross)));
+  const Raster raster{grid_.x_lo + tile_x * members_.edge, grid_.y_lo + tile_y * members_.edge,
+                      members_.edge / tile.across, tile.across};
+  if (!list_entries(raster)) return;
+  const size_t cells = size_t{tile.across} * tile.across;
+  sort_entries(cells);
+  covers_.resize(cells);
+  for (size_t i = 0; i < cells; ++i)
+    covers_[i] = sheets_.cover(
+        seen_, list(i), raster.square(static_cast<uint32_t>(i) % tile.across, static_cast<uint32_t>(i) / tile.across));
+  set_codes(tile);
+  record_.assign(seen_.size(), kNoTriangle);
+  for (size_t i = 0; i < cells; ++i) write_cell(tile, i, row);
+}
+
+/// Which triangles each cell may meet, triangle by triangle. False where they are too many.
+bool RowBuilder::list_entries(const Raster& raster) {
+  entries_of_tile_.clear();
+  for (uint32_t slot = 0; slot < seen_.size(); ++slot) {
+    if (members_.is_too_much(entries_)) return false;
+    const SeenTriangle& one = seen_[slot];
+    const WindowPlace place = place_of(one);
+    const CellRange columns = cells_of(place.x_lo, place.x_hi, raster.x, raster.width, raster.across);
+    const CellRange lines = cells_of(place.y_lo, place.y_hi, raster.y, raster.width, raster.across);
+    const size_t before = entries_of_tile_.size();
+    for (uint32_t y = lines.lo; y <= lines.hi; ++y)
+      for (uint32_t x = columns.lo; x <= columns.hi; ++x) {
+        const CellSquare cell = raster.square(x, y);
+        if (!one.may_touch(cell.x, cell.y, cell.half)) continue;
+        const double highest = one.highest(cell.x, cell.y, cell.half), lowest = one.lowest(cell.x, cell.y, cell.half);
+        entries_of_tile_.push_back(
+            {y * raster.across + x, {static_cast<float>(highest), static_cast<float>(lowest), slot}});
+      }
+    entries_ += entries_of_tile_.size() - before;
+  }
+  return true;
+}
+
+/// Keeps the order within each cell.
+void RowBuilder::sort_entries(size_t cells) {
+  begin_.assign(cells + 1, 0);
+  for (const Entry& entry : entries_of_tile_) ++begin_[entry.cell + 1];
+  for (size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
+  sorted_.resize(entries_of_tile_.size());
+  for (const Entry& entry : entries_of_tile_) sorted_[begin_[entry.cell]++] = entry.one;
+  for (size_t i = begin_.size() - 1; i > 0; --i) begin_[i] = begin_[i - 1];
+  begin_[0] = 0;
+}
+
+/// Room for the errors of depths of about this size, and of their codes.
+float RowBuilder::slack(float s) const {
+  return static_cast<float>(2 * grid_.errors.depth_error(s));
+}
+
+/// Codes of the depths that matter in the tile.
+void RowBuilder::set_codes(CoverageTile& tile) {
+  float lo = kInf, hi = -kInf;
+  for (size_t i = 0; i < covers_.size(); ++i)
+    for (const InCell& one : list(i)) {
+      const float cover = covers_[i];
+      if (one.highest < cover) continue;
+      hi = std::max(hi, one.highest);
+      lo = std::min(lo, cover > -kInf ? cover : one.highest);
+    }
+  if (!(lo <= hi)) return;
+  const float least_step = std::max(slack(lo), slack(hi));
+  const float step = std::max({(hi - lo) / (kLastCode - kFirstCode), least_step, std::numeric_limits<float>::min()});
+  tile.lowest = lo;
+  tile.per_depth = 1 / step;
+}
+
+uint16_t RowBuilder::code_above(const CoverageTile& tile, float s) const {
+  return static_cast<uint16_t>(std::clamp(std::ceil(code(tile, s + slack(s))) + 2, 1.0f, 65535.0f));
+}
+
+uint16_t RowBuilder::code_below(const CoverageTile& tile, float s) const {
+  return static_cast<uint16_t>(std::clamp(std::floor(code(tile, s - slack(s))) - 2, 0.0f, 65535.0f));
+}
+
+/// What lies wholly behind the cover, with room for ties, is nobody's first hit.
+std::span<InCell> RowBuilder::drop_hidden(std::span<InCell> list, float cover) const {
+  const float behind = cover - 4 * slack(cover) - static_cast<float>(grid_.errors.depth * 8);
+  const auto end = std::remove_if(list.begin(), list.end(), [&](const InCell& one) { return one.highest < behind; });
+  return list.first(static_cast<size_t>(end - list.begin()));
+}
+
+void RowBuilder::write_cell(const CoverageTile& tile, size_t number, CoverageRow& row) {
+  const float cover = covers_[number];
+  std::span<InCell> meets = list(number);
+  CoverageCell cell;
+  cell.first = static_cast<uint32_t>(row.references.size());
+  if (cover > -kInf) {
+    cell.cover = code_below(tile, cover);
+    meets = drop_hidden(meets, cover);
+  }
+  std::sort(meets.begin(), meets.end(), [&](const InCell& a, const InCell& b) {
+    return a.highest != b.highest ? a.highest > b.highest : seen_[a.slot].record.id < seen_[b.slot].record.id;
+  });
+  if (!meets.empty()) cell.far = code_above(tile, meets.front().highest);
+  for (const InCell& one : meets) {
+    uint32_t& record = record_[one.slot];
+    if (record == kNoTriangle) {
+      record = static_cast<uint32_t>(row.records.size());
+      row.records.push_back(seen_[one.slot].record);
+    }
+    row.references.push_back({record, code_above(tile, one.highest)});
+  }
+  row.cells.push_back(cell);
+}
+
+}  // namespace raygrain
