@@ -10,6 +10,7 @@ namespace {
 
 using test::add_floor;
 using test::add_triangle;
+using test::border_points;
 using test::with_costs;
 using test::z_area;
 
@@ -211,22 +212,6 @@ TEST(ExitRule, ForeignAndInvalidRays) {
     EXPECT_FALSE(scene.occluded(ray, &shadow));
     EXPECT_EQ(shadow.invalid_rays, 1u);
   }
-}
-
-/// Points on the faces, edges and corners of a region, rounded to float.
-std::vector<Vec3> border_points(const ConvexRegion& region) {
-  std::vector<Vec3> points;
-  for (int code = 0; code < 27; ++code) {
-    const double weights[] = {code % 3 * 0.5, code / 3 % 3 * 0.5, code / 9 * 0.5};
-    Vec3d point{};
-    for (size_t i = 0; i < 8; ++i) {
-      double weight = 1;
-      for (int axis = 0; axis < 3; ++axis) weight *= ((i >> axis) & 1) ? weights[axis] : 1 - weights[axis];
-      point = point + region.corners[i] * weight;
-    }
-    points.push_back(to_float(point));
-  }
-  return points;
 }
 
 TEST(ExitRule, OriginsOnTheBorderAreInside) {

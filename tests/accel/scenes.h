@@ -38,4 +38,20 @@ inline Accelerator with_costs(const TriangleMesh& mesh, const std::vector<Influe
   return Accelerator(std::make_shared<const TriangleMesh>(mesh), std::move(locals), std::move(global), top_level);
 }
 
+/// Points on the faces, edges and corners of a region, rounded to float.
+inline std::vector<Vec3> border_points(const ConvexRegion& region) {
+  std::vector<Vec3> points;
+  for (int code = 0; code < 27; ++code) {
+    const double weights[] = {code % 3 * 0.5, code / 3 % 3 * 0.5, code / 9 * 0.5};
+    Vec3d point{};
+    for (size_t i = 0; i < 8; ++i) {
+      double weight = 1;
+      for (int axis = 0; axis < 3; ++axis) weight *= ((i >> axis) & 1) ? weights[axis] : 1 - weights[axis];
+      point = point + region.corners[i] * weight;
+    }
+    points.push_back(to_float(point));
+  }
+  return points;
+}
+
 }  // namespace raygrain::test

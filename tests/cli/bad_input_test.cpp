@@ -1,13 +1,12 @@
 // Everything that a user can get wrong: one line that says where, what, and how to mend it; the right exit code;
 // nothing half-written.
+#include "cli/bad_input.h"
+
 #include <cstdint>
 #include <cstring>
 #include <functional>
 
 #include <gtest/gtest.h>
-
-#include "cli/program.h"
-#include "support/shared.h"
 
 namespace raygrain::test {
 namespace {
@@ -20,8 +19,6 @@ std::string bytes_of(Values... values) {
   (bytes.append(reinterpret_cast<const char*>(&values), sizeof values), ...);
   return bytes;
 }
-
-const std::string kQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n";
 
 std::string ply_header(const std::string& vertices, const std::string& faces) {
   return "ply\nformat binary_little_endian 1.0\nelement vertex " + vertices +
@@ -39,17 +36,6 @@ std::string point_area(const std::string& fields) {
 
 const char kGoodPlane[] =
     R"("center": [0, 0, 0], "direction": [0, 0, 1], "half_width": 1, "half_height": 1, "depth": 9)";
-
-/// SCENE, AREAS, RAYS and OUT in the arguments stand for paths of this case's own folder.
-struct BadInput {
-  std::string name;
-  std::vector<std::string> arguments;
-  int exit_code;
-  std::string expected;  // part of the message
-  std::string scene_name = "scene.obj", scene = kQuad;
-  std::string areas = {}, rays = {};
-  RunOptions options = {};
-};
 
 std::vector<std::string> compare_with(std::vector<std::string> more) {
   std::vector<std::string> arguments{"compare", "SCENE", "--rays", "50", "--out", "OUT"};
@@ -266,44 +252,6 @@ std::vector<BadInput> bad_outputs() {
           believed_memory),
       {"nested folder where none can be", with({"--out", "SCENE/a/b/c"}), kData, "SCENE/a/b/c"},
   };
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
-    text.replace(at, from.size(), to);
-  return text;
-}
-
-void check(const BadInput& row) {
-  SCOPED_TRACE(row.name);
-  const TemporaryFolder folder;
-  const auto path = [&](const std::string& text) {
-    std::string result = replaced(text, "SCENE", folder.file(row.scene_name));
-    result = replaced(result, "AREAS", folder.file("areas.json"));
-    result = replaced(result, "RAYS", folder.file("rays.csv"));
-    return replaced(result, "OUT", folder.file("out"));
-  };
-  write_file(folder.file(row.scene_name), row.scene);
-  write_file(folder.file("areas.json"), row.areas);
-  write_file(folder.file("rays.csv"), row.rays);
-  const std::vector<std::string> before = names_in(folder.path());
-  std::vector<std::string> arguments;
-  for (const std::string& argument : row.arguments) arguments.push_back(path(argument));
-
-  const RunResult result = run_program(arguments, row.options);
-  EXPECT_EQ(result.exit_code, row.exit_code) << result.errors;
-  EXPECT_TRUE(result.errors.starts_with("raygrain: error: ")) << result.errors;
-  EXPECT_EQ(result.errors.find('\n'), result.errors.size() - 1) << "one line: " << result.errors;
-  // "WHERE: WHAT. HINT", the hint a sentence of its own.
-  EXPECT_NE(result.errors.find(": ", 17), std::string::npos) << result.errors;
-  const size_t stop = result.errors.rfind(". ");
-  ASSERT_NE(stop, std::string::npos) << "no hint: " << result.errors;
-  EXPECT_GT(result.errors.size(), stop + 8) << "no hint: " << result.errors;
-  const std::string expected =
-      row.expected.starts_with("SCENE is") || row.expected.starts_with("SCENE: is") ? row.expected : path(row.expected);
-  EXPECT_NE(result.errors.find(expected), std::string::npos) << result.errors << "lacks: " << expected;
-
-  EXPECT_EQ(names_in(folder.path()), before);  // nothing beside the inputs
 }
 
 TEST(BadInput, Scenes) {
