@@ -84,7 +84,8 @@ class Visibility {
     const double lo = box_.lo[axis], size = static_cast<double>(box_.hi[axis]) - lo;
     if (!(size > 0)) return 0;
     const double place = (static_cast<double>(x) - lo) / size * static_cast<double>(kCells);
-    return static_cast<size_t>(std::clamp(place, 0.0, static_cast<double>(kCells - 1)));
+    // No number where the box has no end.
+    return place > 0 ? static_cast<size_t>(std::min(place, static_cast<double>(kCells - 1))) : 0;
   }
   /// The ray from its start to where it leaves the grid, its end notwithstanding.
   void follow(const Ray& ray) {

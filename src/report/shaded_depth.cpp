@@ -100,7 +100,7 @@ Image shaded_depth(const TriangleMesh& mesh, const Bvh& bvh, const InfluenceArea
     for (uint32_t x = 0; x < width; ++x) {
       Colour colours[kSamples * kSamples];
       for (uint32_t k = 0; k < kSamples * kSamples; ++k) {
-        const size_t i = (size_t{y} * kSamples + k / kSamples) * columns + x * kSamples + k % kSamples;
+        const size_t i = (size_t{y} * kSamples + k / kSamples) * columns + size_t{x} * kSamples + k % kSamples;
         colours[k] = sample_colour(samples[i], cues.far_share[i], cues.behind[i]);
       }
       set_pixel(image, x, y, mean_colour(colours));

@@ -192,5 +192,17 @@ TEST(VisibleMeasure, CountsWhatIsHiddenLess) {
     EXPECT_TRUE(visible(far) >= 0 && visible(far) <= base(far));
 }
 
+// Ends of rays beyond the largest float: the box of what is known has no end, and every answer must be a share.
+TEST(VisibleMeasure, TakesRaysThatEndBeyondFloats) {
+  const RayMeasure base = directional_measure({0, 0, 1});
+  const Bounds box{{0, 0, 0}, {1, 1, 1}};
+  for (const float end : {1e30f, 3e38f})
+    for (const Vec3 direction : {Vec3{1e30f, 1, 0}, Vec3{-1e30f, 1e30f, -1}, Vec3{3e38f, -3e38f, 3e38f}}) {
+      const std::vector<Ray> rays{{{0, 0, 0}, direction, 0, end}, {{0, 0, 5}, {0, 0, -1}, 0, 4}};
+      const float value = visible_measure(base, rays)(box);
+      EXPECT_TRUE(value >= 0 && value <= base(box)) << value;
+    }
+}
+
 }  // namespace
 }  // namespace raygrain
