@@ -15,7 +15,7 @@
 namespace raygrain::bench {
 
 std::vector<Suite> suites() {
-  return {{"general", run_general}, {"rays", run_rays}};
+  return {{"general", run_general}, {"rays", run_rays}, {"builds", run_builds}};
 }
 
 namespace {
@@ -48,7 +48,7 @@ int run(int argc, char** argv) {
   std::string wanted = "all";
   CLI::App app{"raygrain against Embree's best modes, on the same rays"};
   app.add_option("--suite", wanted, "which figures")->check(CLI::IsMember(suite_names()))->capture_default_str();
-  app.add_flag("--quick", settings.quick, "three small scenes, fewer rays");
+  app.add_flag("--quick", settings.quick, "small scenes, fewer rays");
   settings.scenes = kDefaultScenes;
   app.add_option("--scenes", settings.scenes, "a folder with more scenes (not with --quick)")->capture_default_str();
   app.add_option("--only", settings.filter, "only scenes whose source holds this text");

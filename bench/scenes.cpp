@@ -12,7 +12,7 @@
 namespace raygrain::bench {
 namespace {
 
-constexpr size_t kLarge = 400000;  // triangles
+constexpr size_t kLarge = 400000, kHuge = 3000000;  // triangles
 
 std::vector<std::string> models(const std::string& folder) {
   static const std::set<std::string> kKnown{".ply", ".obj", ".stl", ".gltf", ".glb"};
@@ -45,7 +45,8 @@ BenchScene load_bench_scene(const std::string& source) {
   std::string name = std::filesystem::path(source).filename().string();
   if (source.starts_with("procedural:")) {
     name = source.substr(source.find(':') + 1);
-    name = name.substr(0, name.find('?')) + (scene.mesh.triangle_count() > kLarge ? " 1M" : " 100k");
+    const size_t count = scene.mesh.triangle_count();
+    name = name.substr(0, name.find('?')) + (count > kHuge ? " 4M" : (count > kLarge ? " 1M" : " 100k"));
   }
   return {name, std::move(scene.mesh)};
 }

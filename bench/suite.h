@@ -71,6 +71,7 @@ struct Suite {
 std::vector<Suite> suites();
 
 void run_general(const Settings& settings, Results& results);
+void run_builds(const Settings& settings, Results& results);
 void run_rays(const Settings& settings, Results& results);
 
 /// What load_bench_scene takes: the procedural scenes, in small or in both sizes, and the models of settings.scenes.
