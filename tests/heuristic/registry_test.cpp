@@ -104,7 +104,7 @@ TEST(Recipes, UnknownNamesAreRefusedWithTheNearest) {
 }
 
 TEST(Recipes, LongNamesAreCutInTheMessage) {
-  const Error error = error_of([] { parse_recipe(std::string(100000, 'x') + "+ALL", kRegistry); });
+  const Error error = error_of([] { parse_recipe(std::string(100000, 'x').append("+ALL"), kRegistry); });
   EXPECT_LT(std::string(error.what()).size(), 300u);
 }
 
