@@ -21,9 +21,10 @@ for package in hwy boost gtest; do ln -sfn "/usr/include/$package" "$out/include
 launcher=()
 command -v ccache >/dev/null && launcher=(ccache)
 flags=(-std=c++20 -O2 -march=armv8-a+crypto -ffp-contract=off -Wall -Wextra -DRAYGRAIN_STD_THREADS -DRAYGRAIN_CHECKS
-       -DRAYGRAIN_SHARED_SCENES='""' -DRAYGRAIN_SOURCE_FOLDER='"."' -Wno-psabi -Iinclude -Isrc -Itests -isystem "$out/include" -isystem /usr/src/googletest/googletest)
-sources=(src/base/*.cpp src/geometry/*.cpp src/build/*.cpp src/trace/*.cpp src/trace/kernels/*.cpp tests/support/*.cpp
-         tests/trace/*.cpp /usr/src/googletest/googletest/src/gtest-all.cc /usr/src/googletest/googletest/src/gtest_main.cc)
+       -DRAYGRAIN_SHARED_SCENES='""' -DRAYGRAIN_SOURCE_FOLDER='"."' -Wno-psabi -Iinclude -Isrc -Itests -isystem "$out/include"
+       -isystem /usr/src/googletest/googletest)
+sources=(src/base/*.cpp src/geometry/*.cpp src/build/*.cpp src/trace/*.cpp src/trace/kernels/*.cpp src/rays/*.cpp src/families/*.cpp
+         tests/support/*.cpp tests/trace/*.cpp /usr/src/googletest/googletest/src/gtest-all.cc /usr/src/googletest/googletest/src/gtest_main.cc)
 compile() {
   local object
   object="$out/objects/$(echo "$1" | tr / _).o"
