@@ -1,6 +1,8 @@
 #include "build/reference_builder.h"
 
 #include <algorithm>
+#include <limits>
+#include <type_traits>
 
 #include "base/parallel.h"
 #include "base/timer.h"
@@ -28,39 +30,51 @@ void add_scaled(BuildTimes& times, const std::vector<Piece>& pieces, double seco
     times.*part += sum.*part * (seconds / sum.total);
 }
 
+template <class Reference>
+Reference reference_of(const Input& input, size_t i) {
+  const auto id = static_cast<uint32_t>(i);
+  if constexpr (std::is_same_v<Reference, KeyedReference>)
+    return Reference::of(input.bounds[i], input.centroids[i], id);
+  else
+    return Reference::of(input.bounds[i], id);
+}
+
 }  // namespace
 
-ReferenceBuilder::ReferenceBuilder(const Input& input, const BuildOptions& options, bool spatial)
+template <class Reference>
+ReferenceBuilder<Reference>::ReferenceBuilder(const Input& input, const BuildOptions& options, bool spatial)
     : input_(input),
       options_(options),
       spatial_(spatial),
       strategy_(options.strategy, options.parameters, options.costs),
       monitor_(options.progress, input.bounds.size()) {}
 
-bool ReferenceBuilder::serves(const Input& input, const BuildStrategy& strategy) {
-  if (strategy.cost || strategy.planes || strategy.partition || strategy.stop) return false;
-  return input.bounds.empty() || is_finite(extent(input.reach));
-}
-
-void ReferenceBuilder::fill(std::span<Reference> references, PackedBox& box, PackedBox& keys) const {
+template <class Reference>
+void ReferenceBuilder<Reference>::fill(std::span<Reference> references, PackedBox& box, KeyBox& keys) const {
   const size_t count = input_.bounds.size();
-  std::vector<std::array<PackedBox, 2>> boxes((count + kChunk - 1) / kChunk);
+  struct Boxes {
+    PackedBox box;
+    KeyBox keys;
+  };
+  std::vector<Boxes> chunks((count + kChunk - 1) / kChunk);
   parallel_for(count, kChunk, options_.threads, [&](size_t begin, size_t end) {
-    PackedBox all, all_keys;
+    Boxes all;
     for (size_t i = begin; i < end; ++i) {
-      references[i] = Reference::of(input_.bounds[i], input_.centroids[i], static_cast<uint32_t>(i));
-      all.extend(references[i].box);
-      all_keys.extend(references[i].key_box());
+      const Reference reference = reference_of<Reference>(input_, i);
+      references[i] = reference;
+      all.box.extend(reference.box);
+      all.keys.extend(reference);
     }
-    boxes[begin / kChunk] = {all, all_keys};
+    chunks[begin / kChunk] = all;
   });
-  for (const auto& [all, all_keys] : boxes) {
-    box.extend(all);
-    keys.extend(all_keys);
+  for (const Boxes& all : chunks) {
+    box.extend(all.box);
+    keys.extend(all.keys);
   }
 }
 
-Bvh ReferenceBuilder::build(BuildLog* log) {
+template <class Reference>
+Bvh ReferenceBuilder<Reference>::build(BuildLog* log) {
   Laps laps(log ? &log->times : nullptr);
   if (input_.bounds.empty()) return {};
   logging_ = log != nullptr;
@@ -68,11 +82,10 @@ Bvh ReferenceBuilder::build(BuildLog* log) {
   const auto extra =
       static_cast<size_t>(spatial_ ? static_cast<double>(options_.spatial.budget) * static_cast<double>(count) : 0);
   const size_t room = std::min(count + extra, size_t{1} << 31);
-  first_ = Buffer<Reference>(room);
-  second_ = Buffer<Reference>(room);
+  both_ = Buffer<Reference>(2 * room);
   PackedBox box;
   OpenRange root;
-  fill(first_.elements(), box, root.keys);
+  fill(buffer(false), box, root.keys);
   root.context = root_context(box.unpacked(), static_cast<uint32_t>(count), options_.seed);
   root.room = room;
   strategy_.set_total(root.context);
@@ -87,14 +100,15 @@ Bvh ReferenceBuilder::build(BuildLog* log) {
   });
   laps.skip();
   if (log) add_scaled(log->times, pieces, timer.seconds());
-  if (log) log->peak_bytes = first_.bytes() + second_.bytes();
+  if (log) log->peak_bytes = both_.bytes();
   Bvh bvh = assemble(pieces, log);
   laps.lap(&BuildTimes::nodes);
   return bvh;
 }
 
 /// Splits nodes until each is small enough for one thread.
-void ReferenceBuilder::split_top(const OpenRange& root, Laps& laps) {
+template <class Reference>
+void ReferenceBuilder<Reference>::split_top(const OpenRange& root, Laps& laps) {
   top_.assign(1, {});
   std::vector<OpenRange> open{root};
   Scratch scratch;
@@ -123,7 +137,8 @@ void ReferenceBuilder::split_top(const OpenRange& root, Laps& laps) {
 }
 
 /// Depth first, left before right; children are allocated in pairs.
-Piece ReferenceBuilder::build_piece(const OpenRange& root) const {
+template <class Reference>
+Piece ReferenceBuilder<Reference>::build_piece(const OpenRange& root) const {
   Piece piece;
   Laps laps(logging_ ? &piece.times : nullptr);
   piece.nodes.reserve(2 * std::min<size_t>(root.room, size_t{root.context.count} + root.context.count / 4));
@@ -162,7 +177,8 @@ Piece ReferenceBuilder::build_piece(const OpenRange& root) const {
   return piece;
 }
 
-Bvh ReferenceBuilder::assemble(std::vector<Piece>& pieces, BuildLog* log) const {
+template <class Reference>
+Bvh ReferenceBuilder<Reference>::assemble(std::vector<Piece>& pieces, BuildLog* log) const {
   struct Place {
     uint32_t root, first_node, first_prim;
   };
@@ -223,6 +239,35 @@ Bvh ReferenceBuilder::assemble(std::vector<Piece>& pieces, BuildLog* log) const 
       piece = {};
     }
   });
+  return bvh;
+}
+
+/// Whether references need no keys of their own: sums of two coordinates and the sums' distances stay in float's range,
+/// and so do numbers with the bits of ids.
+bool need_no_keys(const Input& input) {
+  constexpr float kMost = std::numeric_limits<float>::max() / 4;
+  return input.centroids.empty() && input.bounds.size() < std::bit_cast<uint32_t>(kInf) &&
+         contains(Bounds{{-kMost, -kMost, -kMost}, {kMost, kMost, kMost}}, input.reach);
+}
+
+bool has_references(const Input& input, const BuildStrategy& strategy) {
+  if (strategy.cost || strategy.planes || strategy.partition || strategy.stop) return false;
+  return input.bounds.empty() || is_finite(extent(input.reach));
+}
+
+Bvh build_from_references(const Input& input, const BuildOptions& options, bool spatial, BuildLog* log) {
+  if (log) *log = {};
+  const Timer timer;
+  Bvh bvh;
+  if (need_no_keys(input)) {
+    bvh = ReferenceBuilder<Reference>(input, options, spatial).build(log);
+  } else {
+    Input keyed = input;
+    std::vector<Vec3> centers;
+    if (input.centroids.empty()) keyed.centroids = centers = box_centers(input.bounds, options.threads);
+    bvh = ReferenceBuilder<KeyedReference>(keyed, options, spatial).build(log);
+  }
+  if (log) log->times.total = timer.seconds();
   return bvh;
 }
 

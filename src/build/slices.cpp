@@ -11,9 +11,9 @@ namespace {
 constexpr float kLess = 1 - 0x1p-20f;  // whatever is rounded, the topmost key stays below the end of the last slice
 }
 
-SliceGrid::SliceGrid(const PackedBox& keys, uint32_t count) : slices(count) {
+SliceGrid::SliceGrid(const KeyBox& keys, uint32_t count) : slices(count) {
   for (int axis = 0; axis < 3; ++axis) {
-    lo.at[axis] = keys.lo(axis);
+    lo.at[axis] = keys.lo.at[axis];
     const float candidate = static_cast<float>(count) * kLess / keys.length(axis);
     // Not for lengths of 0 or so tiny that the quotient overflows.
     scale.at[axis] = candidate <= std::numeric_limits<float>::max() ? candidate : 0;
@@ -65,33 +65,50 @@ void Slices::clear(uint32_t slices) {
   counts_.assign(size_t{3} * slices, 0);
 }
 
+/// Some references at a time: first where they go, then there. Neighbours in the list are often in the same slice, and
+/// one would wait for the other, so each follows one from the other half.
+template <class Reference>
 void Slices::add(const SliceGrid& grid, std::span<const Reference> references) {
+  constexpr size_t kAtOnce = 256;
   const SliceGrid at = grid;
   PackedBox* const boxes = boxes_.data();
   uint32_t* const counts = counts_.data();
   const size_t stride = slices_;
-  for (const Reference& reference : references) {
-    const auto slice = [&](int axis) {
-      const float place = (reference.key.at[axis] - at.lo.at[axis]) * at.scale.at[axis];
-      return static_cast<size_t>(static_cast<uint32_t>(static_cast<int32_t>(place)));
+  std::array<FourInts, kAtOnce> places;
+  for (size_t begin = 0; begin < references.size(); begin += kAtOnce) {
+    const Reference* const some = references.data() + begin;
+    const size_t count = std::min(kAtOnce, references.size() - begin), half = count / 2;
+    for (size_t k = 0; k < count; ++k) {
+      RAYGRAIN_LANES
+      for (int i = 0; i < 4; ++i)
+        places[k].at[i] = static_cast<int32_t>((some[k].key(i) - at.lo.at[i]) * at.scale.at[i]);
+    }
+    const auto put = [&](size_t k) {
+      const auto slice = [&](int axis) { return static_cast<size_t>(static_cast<uint32_t>(places[k].at[axis])); };
+      const size_t x = slice(0), y = stride + slice(1), z = 2 * stride + slice(2);
+      boxes[x].extend(some[k].box);
+      boxes[y].extend(some[k].box);
+      boxes[z].extend(some[k].box);
+      ++counts[x];
+      ++counts[y];
+      ++counts[z];
     };
-    const size_t x = slice(0), y = stride + slice(1), z = 2 * stride + slice(2);
-    boxes[x].extend(reference.box);
-    boxes[y].extend(reference.box);
-    boxes[z].extend(reference.box);
-    ++counts[x];
-    ++counts[y];
-    ++counts[z];
+    for (size_t k = 0; k < half; ++k) {
+      put(k);
+      put(half + k);
+    }
+    if (count > 2 * half) put(count - 1);
   }
 }
 
+template <class Reference>
 void Slices::add_along(int axis, const SliceGrid& grid, std::span<const Reference> references) {
   const float lo = grid.lo.at[axis], scale = grid.scale.at[axis];
   PackedBox* const boxes = boxes_.data() + static_cast<size_t>(axis) * slices_;
   uint32_t* const counts = counts_.data() + static_cast<size_t>(axis) * slices_;
   for (const Reference& reference : references) {
     const auto slice =
-        static_cast<size_t>(static_cast<uint32_t>(static_cast<int32_t>((reference.key.at[axis] - lo) * scale)));
+        static_cast<size_t>(static_cast<uint32_t>(static_cast<int32_t>((reference.key(axis) - lo) * scale)));
     boxes[slice].extend(reference.box);
     ++counts[slice];
   }
@@ -146,16 +163,17 @@ Cut Slices::best_cut(const ActiveStrategy& strategy, const NodeContext& node, co
   return best;
 }
 
+template <class Reference>
 Cut best_cut_of_small(std::span<const Reference> references, const ActiveStrategy& strategy, const NodeContext& node,
                       const AxisOrder& order, CutCandidates& candidates) {
   candidates.clear();
   const size_t count = references.size();
   std::array<const Reference*, kSmallNode> sorted{};
   for (uint32_t choice = 0; choice < static_cast<uint32_t>(order.count); ++choice) {
-    const auto axis = static_cast<size_t>(order.choices[choice].axis);
+    const int axis = order.choices[choice].axis;
     for (size_t i = 0; i < count; ++i) {
       size_t place = i;
-      for (; place > 0 && references[i].key.at[axis] < sorted[place - 1]->key.at[axis]; --place)
+      for (; place > 0 && references[i].key(axis) < sorted[place - 1]->key(axis); --place)
         sorted[place] = sorted[place - 1];
       sorted[place] = &references[i];
     }
@@ -163,8 +181,7 @@ Cut best_cut_of_small(std::span<const Reference> references, const ActiveStrateg
     PackedBox side;
     for (uint32_t i = 1; i < count; ++i) {
       side.extend(sorted[i - 1]->box);
-      if (sorted[i - 1]->key.at[axis] < sorted[i]->key.at[axis])
-        candidates.add_left(choice, sorted[i]->key.at[axis], i, side);
+      if (sorted[i - 1]->key(axis) < sorted[i]->key(axis)) candidates.add_left(choice, sorted[i]->key(axis), i, side);
     }
     side = {};
     size_t candidate = candidates.size();
@@ -178,5 +195,14 @@ Cut best_cut_of_small(std::span<const Reference> references, const ActiveStrateg
   best.scale = 1;
   return best;
 }
+
+template void Slices::add(const SliceGrid&, std::span<const Reference>);
+template void Slices::add(const SliceGrid&, std::span<const KeyedReference>);
+template void Slices::add_along(int, const SliceGrid&, std::span<const Reference>);
+template void Slices::add_along(int, const SliceGrid&, std::span<const KeyedReference>);
+template Cut best_cut_of_small(std::span<const Reference>, const ActiveStrategy&, const NodeContext&, const AxisOrder&,
+                               CutCandidates&);
+template Cut best_cut_of_small(std::span<const KeyedReference>, const ActiveStrategy&, const NodeContext&,
+                               const AxisOrder&, CutCandidates&);
 
 }  // namespace raygrain::builder

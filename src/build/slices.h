@@ -34,7 +34,7 @@ struct SliceGrid {
   uint32_t slices = 0;
 
   SliceGrid() = default;
-  SliceGrid(const PackedBox& keys, uint32_t count);
+  SliceGrid(const KeyBox& keys, uint32_t count);
 };
 
 /// Planes and what they leave on their sides, of all axes of one node. Keeps its memory.
@@ -70,8 +70,10 @@ class CutCandidates {
 class Slices {
  public:
   void clear(uint32_t slices);
+  template <class Reference>
   void add(const SliceGrid& grid, std::span<const Reference> references);
   /// The same for one axis alone: in a third of the time.
+  template <class Reference>
   void add_along(int axis, const SliceGrid& grid, std::span<const Reference> references);
   void merge(const Slices& other);
 
@@ -93,6 +95,7 @@ class Slices {
 /// Nodes of up to this many references are parted at the best plane between any two keys: that takes no longer than
 /// slices, and misses nothing.
 inline constexpr uint32_t kSmallNode = 8;
+template <class Reference>
 Cut best_cut_of_small(std::span<const Reference> references, const ActiveStrategy& strategy, const NodeContext& node,
                       const AxisOrder& order, CutCandidates& candidates);
 

@@ -7,15 +7,12 @@ namespace raygrain::builder {
 namespace {
 
 /// The part of a reference's primitive between two planes: within the reference's box, whatever the callback says.
+template <class Reference>
 Bounds part_between(const Reference& reference, int axis, float lo, float hi, const ClipPrimitive& clip) {
   Bounds box = reference.box.unpacked();
   box.lo[axis] = std::max(box.lo[axis], lo);
   box.hi[axis] = std::min(box.hi[axis], hi);
   return intersected(box, clip(reference.id(), box));
-}
-
-Reference with_box(const Reference& reference, const Bounds& box) {
-  return Reference::of(box, center(box), reference.id());
 }
 
 }  // namespace
@@ -35,6 +32,7 @@ void SpaceSlices::clear() {
   for (auto& axis : slices_) axis.fill(Slice{});
 }
 
+template <class Reference>
 void SpaceSlices::add(const SpaceGrid& grid, std::span<const Reference> references) {
   constexpr float kTop = SpaceGrid::kSlices - 1, kLess = 1 - 0x1p-20f;  // an end on a plane lies below it
   for (const Reference& reference : references) {
@@ -121,7 +119,8 @@ Cut SpaceSlices::best_cut(const ActiveStrategy& strategy, const NodeContext& nod
   return best;
 }
 
-void SpaceSides::part(const Cut& plane, std::span<const Reference> references, const ClipPrimitive& clip) {
+template <class Reference>
+void SpaceSides<Reference>::part(const Cut& plane, std::span<const Reference> references, const ClipPrimitive& clip) {
   left.clear();
   right.clear();
   torn.clear();
@@ -145,9 +144,9 @@ void SpaceSides::part(const Cut& plane, std::span<const Reference> references, c
       if (is_empty(lower) && is_empty(upper)) {
         put_left(reference);  // a callback that denies the primitive: keep it whole
       } else if (is_empty(upper)) {
-        put_left(with_box(reference, lower));
+        put_left(reference.with_box(lower));
       } else if (is_empty(lower)) {
-        put_right(with_box(reference, upper));
+        put_right(reference.with_box(upper));
       } else {
         torn.push_back({reference, lower, upper});
         left_box.extend(PackedBox::of(lower));
@@ -157,7 +156,8 @@ void SpaceSides::part(const Cut& plane, std::span<const Reference> references, c
   }
 }
 
-void SpaceSides::mend(const Cut& cut, const ActiveStrategy& strategy, const NodeContext& node) {
+template <class Reference>
+void SpaceSides<Reference>::mend(const Cut& cut, const ActiveStrategy& strategy, const NodeContext& node) {
   const auto left_measure = static_cast<double>(cut.left_measure);
   const auto right_measure = static_cast<double>(cut.right_measure);
   for (const Torn& reference : torn) {
@@ -172,10 +172,15 @@ void SpaceSides::mend(const Cut& cut, const ActiveStrategy& strategy, const Node
     } else if (all_right <= cut.cost) {
       right.push_back(reference.whole);
     } else {
-      left.push_back(with_box(reference.whole, reference.lower));
-      right.push_back(with_box(reference.whole, reference.upper));
+      left.push_back(reference.whole.with_box(reference.lower));
+      right.push_back(reference.whole.with_box(reference.upper));
     }
   }
 }
+
+template void SpaceSlices::add(const SpaceGrid&, std::span<const Reference>);
+template void SpaceSlices::add(const SpaceGrid&, std::span<const KeyedReference>);
+template struct SpaceSides<Reference>;
+template struct SpaceSides<KeyedReference>;
 
 }  // namespace raygrain::builder

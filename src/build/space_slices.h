@@ -26,6 +26,7 @@ struct SpaceGrid {
 class SpaceSlices {
  public:
   void clear();
+  template <class Reference>
   void add(const SpaceGrid& grid, std::span<const Reference> references);
   void merge(const SpaceSlices& other);
 
@@ -52,6 +53,7 @@ class SpaceSlices {
 };
 
 /// The references of one chunk on either side of a plane, and those that it cuts.
+template <class Reference>
 struct SpaceSides {
   struct Torn {
     Reference whole;

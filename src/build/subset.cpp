@@ -88,13 +88,15 @@ class SubsetBuilder {
   }
 
  private:
+  Vec3 key(size_t i) const { return input_.centroids.empty() ? center(input_.bounds[i]) : input_.centroids[i]; }
+
   void build_top() {
     subset_ = choose_subset(input_.bounds.size(), options_.seed);
     std::vector<Bounds> bounds;
     std::vector<Vec3> centroids;
     for (const uint32_t i : subset_) {
       bounds.push_back(input_.bounds[i]);
-      centroids.push_back(input_.centroids[i]);
+      if (!input_.centroids.empty()) centroids.push_back(input_.centroids[i]);
     }
     BuildOptions options = options_;
     options.progress = {};
@@ -118,7 +120,7 @@ class SubsetBuilder {
     const size_t count = input_.bounds.size();
     std::vector<uint32_t> places(count);
     parallel_for(count, 4096, options_.threads, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) places[i] = cluster_of[find_cluster(top_, input_.centroids[i])];
+      for (size_t i = begin; i < end; ++i) places[i] = cluster_of[find_cluster(top_, key(i))];
     });
     // The subset stays where its tree put it, so no cluster is empty.
     for (size_t i = 0; i < top_.nodes.size(); ++i)
@@ -140,10 +142,9 @@ class SubsetBuilder {
     std::vector<Bounds> bounds;
     std::vector<Vec3> centroids;
     bounds.reserve(cluster.end - cluster.begin);
-    centroids.reserve(cluster.end - cluster.begin);
     for (size_t i = cluster.begin; i < cluster.end; ++i) {
       bounds.push_back(input_.bounds[members_[i]]);
-      centroids.push_back(input_.centroids[members_[i]]);
+      if (!input_.centroids.empty()) centroids.push_back(input_.centroids[members_[i]]);
     }
     BuildOptions options = options_;
     options.progress = {};
@@ -225,10 +226,9 @@ class SubsetBuilder {
 Bvh build_subset(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                  BuildLog* log) {
   validate(options);
-  std::vector<Vec3> centers;
-  const builder::Input input = builder::checked_input(bounds, centroids, centers, options.threads);
-  if (bounds.size() < kLeast || !builder::ReferenceBuilder::serves(input, options.strategy))
-    return build_binned(bounds, input.centroids, options, log);
+  const builder::Input input = builder::checked_input(bounds, centroids, options.threads);
+  if (bounds.size() < kLeast || !builder::has_references(input, options.strategy))
+    return build_binned(bounds, centroids, options, log);
   if (log) *log = {};
   const Timer timer;
   Bvh bvh = SubsetBuilder(input, options, log != nullptr).build(log);
