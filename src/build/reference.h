@@ -59,6 +59,7 @@ struct PackedBox {
 struct KeyBox {
   FourFloats lo{{kInf, kInf, kInf, kInf}}, hi{{-kInf, -kInf, -kInf, -kInf}};
 
+  static KeyBox of(const Bounds& b) { return {{{b.lo.x, b.lo.y, b.lo.z, 0}}, {{b.hi.x, b.hi.y, b.hi.z, 0}}}; }
   float length(int axis) const { return hi.at[axis] - lo.at[axis]; }
   Bounds unpacked() const { return {{lo.at[0], lo.at[1], lo.at[2]}, {hi.at[0], hi.at[1], hi.at[2]}}; }
   void extend(const KeyBox& other) {

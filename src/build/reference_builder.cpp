@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <type_traits>
 
 #include "base/parallel.h"
 #include "base/timer.h"
@@ -30,13 +29,15 @@ void add_scaled(BuildTimes& times, const std::vector<Piece>& pieces, double seco
     times.*part += sum.*part * (seconds / sum.total);
 }
 
-template <class Reference>
-Reference reference_of(const Input& input, size_t i) {
-  const auto id = static_cast<uint32_t>(i);
-  if constexpr (std::is_same_v<Reference, KeyedReference>)
-    return Reference::of(input.bounds[i], input.centroids[i], id);
-  else
-    return Reference::of(input.bounds[i], id);
+/// Writes one reference, numbers one by one; its key. To write lanes and read them at once as a vector would be slow.
+Vec3 put(const Input& input, size_t i, Reference& reference) {
+  const Bounds& box = input.bounds[i];
+  reference = Reference::of(box, static_cast<uint32_t>(i));
+  return box.lo + box.hi;
+}
+Vec3 put(const Input& input, size_t i, KeyedReference& reference) {
+  reference = KeyedReference::of(input.bounds[i], input.centroids[i], static_cast<uint32_t>(i));
+  return input.centroids[i];
 }
 
 }  // namespace
@@ -50,27 +51,23 @@ ReferenceBuilder<Reference>::ReferenceBuilder(const Input& input, const BuildOpt
       monitor_(options.progress, input.bounds.size()) {}
 
 template <class Reference>
-void ReferenceBuilder<Reference>::fill(std::span<Reference> references, PackedBox& box, KeyBox& keys) const {
+void ReferenceBuilder<Reference>::fill(std::span<Reference> references, Bounds& box, KeyBox& keys) const {
   const size_t count = input_.bounds.size();
-  struct Boxes {
-    PackedBox box;
-    KeyBox keys;
-  };
-  std::vector<Boxes> chunks((count + kChunk - 1) / kChunk);
+  std::vector<std::array<Bounds, 2>> chunks((count + kChunk - 1) / kChunk);
   parallel_for(count, kChunk, options_.threads, [&](size_t begin, size_t end) {
-    Boxes all;
+    Bounds all, all_keys;
     for (size_t i = begin; i < end; ++i) {
-      const Reference reference = reference_of<Reference>(input_, i);
-      references[i] = reference;
-      all.box.extend(reference.box);
-      all.keys.extend(reference);
+      all.extend(input_.bounds[i]);
+      all_keys.extend(put(input_, i, references[i]));
     }
-    chunks[begin / kChunk] = all;
+    chunks[begin / kChunk] = {all, all_keys};
   });
-  for (const Boxes& all : chunks) {
-    box.extend(all.box);
-    keys.extend(all.keys);
+  Bounds all_keys;
+  for (const auto& [part, part_keys] : chunks) {
+    box.extend(part);
+    all_keys.extend(part_keys);
   }
+  keys = KeyBox::of(all_keys);
 }
 
 template <class Reference>
@@ -83,10 +80,10 @@ Bvh ReferenceBuilder<Reference>::build(BuildLog* log) {
       static_cast<size_t>(spatial_ ? static_cast<double>(options_.spatial.budget) * static_cast<double>(count) : 0);
   const size_t room = std::min(count + extra, size_t{1} << 31);
   both_ = Buffer<Reference>(2 * room);
-  PackedBox box;
+  Bounds box;
   OpenRange root;
   fill(buffer(false), box, root.keys);
-  root.context = root_context(box.unpacked(), static_cast<uint32_t>(count), options_.seed);
+  root.context = root_context(box, static_cast<uint32_t>(count), options_.seed);
   root.room = room;
   strategy_.set_total(root.context);
   root_measure_ = root.measure = strategy_.measure(root.context.bounds, root.context);

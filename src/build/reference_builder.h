@@ -54,7 +54,7 @@ class ReferenceBuilder {
     int64_t piece = -1;
   };
 
-  void fill(std::span<Reference> references, PackedBox& box, KeyBox& keys) const;
+  void fill(std::span<Reference> references, Bounds& box, KeyBox& keys) const;
   void split_top(const OpenRange& root, Laps& laps);
   Piece build_piece(const OpenRange& root) const;
   bool split(const OpenRange& node, Scratch& scratch, unsigned threads, Children& children, NodeLog& note,
@@ -72,7 +72,7 @@ class ReferenceBuilder {
   static bool fits(const OpenRange& node, const Cut& cut);
   void part_by_keys(const OpenRange& node, const Cut& cut, Scratch& scratch, unsigned threads,
                     Children& children) const;
-  Children open_children(const OpenRange& node, const Cut& cut) const;
+  void open_children(const OpenRange& node, const Cut& cut, Children& children) const;
   std::span<Reference> buffer(bool second) const {
     const size_t room = both_.size() / 2;
     return both_.elements().subspan(second ? room : 0, room);

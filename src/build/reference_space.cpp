@@ -66,7 +66,7 @@ bool ReferenceBuilder<Reference>::part_by_space(const OpenRange& node, Cut& cut,
   cut.right = boxes[1].unpacked();
   cut.left_measure = strategy_.measure(cut.left, node.context);
   cut.right_measure = strategy_.measure(cut.right, node.context);
-  children = open_children(node, cut);
+  open_children(node, cut, children);
   children.left.keys = keys[0];
   children.right.keys = keys[1];
   auto left = buffer(!node.in_second).begin() + static_cast<std::ptrdiff_t>(children.left.begin);

@@ -140,10 +140,8 @@ Cut ReferenceBuilder<Reference>::halve(const OpenRange& node) const {
 }
 
 template <class Reference>
-typename ReferenceBuilder<Reference>::Children ReferenceBuilder<Reference>::open_children(const OpenRange& node,
-                                                                                          const Cut& cut) const {
+void ReferenceBuilder<Reference>::open_children(const OpenRange& node, const Cut& cut, Children& children) const {
   const NodeContext& parent = node.context;
-  Children children;
   children.left.context = child_context(parent, cut.left, cut.left_count, cut.axis, 1);
   children.right.context = child_context(parent, cut.right, cut.right_count, cut.axis, 2);
   children.left.measure = cut.left_measure;
@@ -155,14 +153,13 @@ typename ReferenceBuilder<Reference>::Children ReferenceBuilder<Reference>::open
   children.left.begin = node.begin;
   children.right.begin = node.begin + children.left.room;
   children.left.in_second = children.right.in_second = !node.in_second;
-  return children;
 }
 
 /// Both sides keep their order.
 template <class Reference>
 void ReferenceBuilder<Reference>::part_by_keys(const OpenRange& node, const Cut& cut, Scratch& scratch,
                                                unsigned threads, Children& children) const {
-  children = open_children(node, cut);
+  open_children(node, cut, children);
   const std::span<const Reference> all = references_of(node);
   Reference* const target = buffer(!node.in_second).data();
   if (cut.kind == Cut::Kind::kHalves) {
@@ -188,10 +185,8 @@ void ReferenceBuilder<Reference>::part_by_keys(const OpenRange& node, const Cut&
   }
 }
 
-template ReferenceBuilder<Reference>::Children ReferenceBuilder<Reference>::open_children(const OpenRange&,
-                                                                                          const Cut&) const;
-template ReferenceBuilder<KeyedReference>::Children ReferenceBuilder<KeyedReference>::open_children(const OpenRange&,
-                                                                                                    const Cut&) const;
+template void ReferenceBuilder<Reference>::open_children(const OpenRange&, const Cut&, Children&) const;
+template void ReferenceBuilder<KeyedReference>::open_children(const OpenRange&, const Cut&, Children&) const;
 template bool ReferenceBuilder<Reference>::split(const OpenRange&, Scratch&, unsigned, Children&, NodeLog&,
                                                  Laps&) const;
 template bool ReferenceBuilder<KeyedReference>::split(const OpenRange&, Scratch&, unsigned, Children&, NodeLog&,

@@ -20,19 +20,21 @@ SliceGrid::SliceGrid(const KeyBox& keys, uint32_t count) : slices(count) {
   }
 }
 
-void CutCandidates::clear() {
-  candidates_.clear();
-  sides_.clear();
+void CutCandidates::clear(size_t room) {
+  size_ = 0;
+  if (candidates_.size() >= room) return;
+  candidates_.resize(room);
+  sides_.resize(2 * room);
+  measures_.resize(2 * room);
 }
 
 Cut CutCandidates::cheapest(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order) {
   Cut best;
-  if (candidates_.empty()) return best;
-  measures_.resize(sides_.size());
-  strategy.measure(sides_, measures_, node);
-  size_t winner = candidates_.size();
+  if (size_ == 0) return best;
+  strategy.measure({sides_.data(), 2 * size_}, {measures_.data(), 2 * size_}, node);
+  size_t winner = size_;
   uint32_t larger_side = 0;
-  for (size_t i = 0; i < candidates_.size(); ++i) {
+  for (size_t i = 0; i < size_; ++i) {
     const uint32_t left = candidates_[i].left_count, right = node.count - left;
     const double cost =
         static_cast<double>(measures_[2 * i]) * left + static_cast<double>(measures_[2 * i + 1]) * right;
@@ -43,7 +45,7 @@ Cut CutCandidates::cheapest(const ActiveStrategy& strategy, const NodeContext& n
     best.cost = cost;
     larger_side = larger;
   }
-  if (winner == candidates_.size()) return best;
+  if (winner == size_) return best;
   const Candidate& candidate = candidates_[winner];
   const AxisChoice& axis = order.choices[candidate.choice];
   best.kind = Cut::Kind::kKeys;
@@ -126,37 +128,33 @@ size_t Slices::count_below(int axis, uint32_t end) const {
   return std::accumulate(first, first + end, size_t{0});
 }
 
-/// Adds a candidate for each plane above a filled slice, but for the last filled one. First the left sides upwards,
-/// then the right sides downwards.
-void Slices::sweep(const AxisChoice& axis, uint32_t choice, uint32_t total, CutCandidates& candidates) const {
-  const PackedBox* const boxes = boxes_.data() + static_cast<size_t>(axis.axis) * slices_;
-  const uint32_t* const counts = counts_.data() + static_cast<size_t>(axis.axis) * slices_;
+/// Adds a candidate for each plane: first the left sides upwards, then the right sides downwards. No side is empty, for
+/// the least key is in the first slice and the greatest in the last. A plane above an empty slice costs what the one
+/// below costs, which comes first: to look for empty slices takes longer.
+void Slices::sweep(int axis, uint32_t choice, CutCandidates& candidates) const {
+  const PackedBox* const boxes = boxes_.data() + static_cast<size_t>(axis) * slices_;
+  const uint32_t* const counts = counts_.data() + static_cast<size_t>(axis) * slices_;
   const size_t first = candidates.size();
+  RAYGRAIN_CHECK(counts[0] > 0 && counts[slices_ - 1] > 0);
   PackedBox side;
-  uint32_t left_count = 0, slice = 0;
-  for (;; ++slice) {
-    if (counts[slice] == 0) continue;
+  uint32_t left_count = 0;
+  for (uint32_t slice = 0; slice + 1 < slices_; ++slice) {
     side.extend(boxes[slice]);
     left_count += counts[slice];
-    if (left_count == total) break;
     candidates.add_left(choice, static_cast<float>(slice + 1), left_count, side);
   }
   side = {};
-  size_t candidate = candidates.size();
-  for ([[maybe_unused]] uint32_t left = total; candidate > first; --slice) {
-    if (counts[slice] == 0) continue;
+  for (uint32_t slice = slices_ - 1; slice > 0; --slice) {
     side.extend(boxes[slice]);
-    left -= counts[slice];
-    candidates.set_right(--candidate, side);
-    RAYGRAIN_CHECK_EQ(candidates.left_count(candidate), left);
+    candidates.set_right(first + slice - 1, side);
   }
 }
 
 Cut Slices::best_cut(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order,
                      const SliceGrid& grid, CutCandidates& candidates) const {
-  candidates.clear();
+  candidates.clear(size_t{3} * slices_);
   for (uint32_t i = 0; i < static_cast<uint32_t>(order.count); ++i)
-    if (grid.scale.at[order.choices[i].axis] > 0) sweep(order.choices[i], i, node.count, candidates);
+    if (grid.scale.at[order.choices[i].axis] > 0) sweep(order.choices[i].axis, i, candidates);
   Cut best = candidates.cheapest(strategy, node, order);
   best.lo = grid.lo.at[best.axis];
   best.scale = grid.scale.at[best.axis];
@@ -166,7 +164,7 @@ Cut Slices::best_cut(const ActiveStrategy& strategy, const NodeContext& node, co
 template <class Reference>
 Cut best_cut_of_small(std::span<const Reference> references, const ActiveStrategy& strategy, const NodeContext& node,
                       const AxisOrder& order, CutCandidates& candidates) {
-  candidates.clear();
+  candidates.clear(size_t{3} * kSmallNode);
   const size_t count = references.size();
   std::array<const Reference*, kSmallNode> sorted{};
   for (uint32_t choice = 0; choice < static_cast<uint32_t>(order.count); ++choice) {

@@ -40,15 +40,16 @@ struct SliceGrid {
 /// Planes and what they leave on their sides, of all axes of one node. Keeps its memory.
 class CutCandidates {
  public:
-  void clear();
+  /// None is left; room for so many.
+  void clear(size_t room);
   /// `choice`: number of the axis in the orientation's order. The right side follows.
   void add_left(uint32_t choice, float limit, uint32_t left_count, const PackedBox& left) {
-    candidates_.push_back({choice, limit, left_count});
-    sides_.push_back(left.unpacked());
-    sides_.emplace_back();
+    candidates_[size_] = {choice, limit, left_count};
+    sides_[2 * size_] = left.unpacked();
+    ++size_;
   }
   void set_right(size_t candidate, const PackedBox& right) { sides_[2 * candidate + 1] = right.unpacked(); }
-  size_t size() const { return candidates_.size(); }
+  size_t size() const { return size_; }
   uint32_t left_count(size_t candidate) const { return candidates_[candidate].left_count; }
 
   /// The cheapest; no cut when there is none. Of planes of equal cost the one with the most even counts, then the
@@ -61,8 +62,9 @@ class CutCandidates {
     float limit;
     uint32_t left_count;
   };
-  std::vector<Candidate> candidates_;
-  std::vector<Bounds> sides_;  // left, right of each candidate
+  size_t size_ = 0;
+  std::vector<Candidate> candidates_;  // no shorter than `size_`; likewise:
+  std::vector<Bounds> sides_;          // left, right of each candidate
   std::vector<float> measures_;
 };
 
@@ -85,7 +87,7 @@ class Slices {
                CutCandidates& candidates) const;
 
  private:
-  void sweep(const AxisChoice& axis, uint32_t choice, uint32_t total, CutCandidates& candidates) const;
+  void sweep(int axis, uint32_t choice, CutCandidates& candidates) const;
 
   uint32_t slices_ = 0;
   std::vector<PackedBox> boxes_;  // axis-major
