@@ -22,8 +22,8 @@ SliceGrid::SliceGrid(const KeyBox& keys, uint32_t count) : slices(count) {
 
 void CutCandidates::clear(size_t room) {
   size_ = 0;
-  if (candidates_.size() >= room) return;
-  candidates_.resize(room);
+  if (planes_.size() >= room) return;
+  planes_.resize(room);
   sides_.resize(2 * room);
   measures_.resize(2 * room);
 }
@@ -35,7 +35,7 @@ Cut CutCandidates::cheapest(const ActiveStrategy& strategy, const NodeContext& n
   size_t winner = size_;
   uint32_t larger_side = 0;
   for (size_t i = 0; i < size_; ++i) {
-    const uint32_t left = candidates_[i].left_count, right = node.count - left;
+    const uint32_t left = planes_[i].left_count, right = node.count - left;
     const double cost =
         static_cast<double>(measures_[2 * i]) * left + static_cast<double>(measures_[2 * i + 1]) * right;
     if (cost > best.cost) continue;
@@ -46,16 +46,16 @@ Cut CutCandidates::cheapest(const ActiveStrategy& strategy, const NodeContext& n
     larger_side = larger;
   }
   if (winner == size_) return best;
-  const Candidate& candidate = candidates_[winner];
-  const AxisChoice& axis = order.choices[candidate.choice];
+  const Plane& plane = planes_[winner];
+  const AxisChoice& axis = order.choices[plane.choice];
   best.kind = Cut::Kind::kKeys;
   best.axis = axis.axis;
   best.quality = axis.quality;
-  best.limit = candidate.limit;
+  best.limit = plane.limit;
   best.left = sides_[2 * winner];
   best.right = sides_[2 * winner + 1];
-  best.left_count = candidate.left_count;
-  best.right_count = node.count - candidate.left_count;
+  best.left_count = plane.left_count;
+  best.right_count = node.count - plane.left_count;
   best.left_measure = measures_[2 * winner];
   best.right_measure = measures_[2 * winner + 1];
   return best;
@@ -128,25 +128,28 @@ size_t Slices::count_below(int axis, uint32_t end) const {
   return std::accumulate(first, first + end, size_t{0});
 }
 
-/// Adds a candidate for each plane: first the left sides upwards, then the right sides downwards. No side is empty, for
-/// the least key is in the first slice and the greatest in the last. A plane above an empty slice costs what the one
-/// below costs, which comes first: to look for empty slices takes longer.
+/// Adds a candidate for each plane above a filled slice, but for the last slice: first the left sides upwards, then the
+/// right sides downwards. The least key is in the first slice and the greatest in the last, so no side is empty. A
+/// plane above an empty slice is overwritten by the next: to jump past it would take longer.
 void Slices::sweep(int axis, uint32_t choice, CutCandidates& candidates) const {
   const PackedBox* const boxes = boxes_.data() + static_cast<size_t>(axis) * slices_;
   const uint32_t* const counts = counts_.data() + static_cast<size_t>(axis) * slices_;
-  const size_t first = candidates.size();
   RAYGRAIN_CHECK(counts[0] > 0 && counts[slices_ - 1] > 0);
+  size_t candidate = candidates.size();
   PackedBox side;
   uint32_t left_count = 0;
   for (uint32_t slice = 0; slice + 1 < slices_; ++slice) {
     side.extend(boxes[slice]);
     left_count += counts[slice];
-    candidates.add_left(choice, static_cast<float>(slice + 1), left_count, side);
+    candidates.set_left(candidate, {choice, static_cast<float>(slice + 1), left_count}, side);
+    candidate += counts[slice] > 0 ? 1 : 0;
   }
-  side = {};
-  for (uint32_t slice = slices_ - 1; slice > 0; --slice) {
+  candidates.resize(candidate);
+  side = boxes[slices_ - 1];
+  for (uint32_t slice = slices_ - 1; slice-- > 0;) {
+    candidates.set_right(candidate - 1, side);
+    candidate -= counts[slice] > 0 ? 1 : 0;
     side.extend(boxes[slice]);
-    candidates.set_right(first + slice - 1, side);
   }
 }
 
@@ -179,13 +182,13 @@ Cut best_cut_of_small(std::span<const Reference> references, const ActiveStrateg
     PackedBox side;
     for (uint32_t i = 1; i < count; ++i) {
       side.extend(sorted[i - 1]->box);
-      if (sorted[i - 1]->key(axis) < sorted[i]->key(axis)) candidates.add_left(choice, sorted[i]->key(axis), i, side);
+      if (sorted[i - 1]->key(axis) < sorted[i]->key(axis)) candidates.add_left({choice, sorted[i]->key(axis), i}, side);
     }
     side = {};
     size_t candidate = candidates.size();
     for (size_t i = count; candidate > first; --i) {
       side.extend(sorted[i - 1]->box);
-      if (candidates.left_count(candidate - 1) + 1 == i) candidates.set_right(--candidate, side);
+      if (candidates.plane(candidate - 1).left_count + 1 == i) candidates.set_right(--candidate, side);
     }
     if (count == 2 && candidate < candidates.size()) break;  // two can be parted in one way only
   }

@@ -40,31 +40,34 @@ struct SliceGrid {
 /// Planes and what they leave on their sides, of all axes of one node. Keeps its memory.
 class CutCandidates {
  public:
-  /// None is left; room for so many.
+  struct Plane {
+    uint32_t choice;  // number of the axis in the orientation's order
+    float limit;
+    uint32_t left_count;
+  };
+
+  /// None is left; there is room for so many.
   void clear(size_t room);
-  /// `choice`: number of the axis in the orientation's order. The right side follows.
-  void add_left(uint32_t choice, float limit, uint32_t left_count, const PackedBox& left) {
-    candidates_[size_] = {choice, limit, left_count};
-    sides_[2 * size_] = left.unpacked();
-    ++size_;
+  size_t size() const { return size_; }
+  void resize(size_t size) { size_ = size; }
+  const Plane& plane(size_t candidate) const { return planes_[candidate]; }
+
+  /// Of any candidate that there is room for.
+  void set_left(size_t candidate, const Plane& plane, const PackedBox& left) {
+    planes_[candidate] = plane;
+    sides_[2 * candidate] = left.unpacked();
   }
   void set_right(size_t candidate, const PackedBox& right) { sides_[2 * candidate + 1] = right.unpacked(); }
-  size_t size() const { return size_; }
-  uint32_t left_count(size_t candidate) const { return candidates_[candidate].left_count; }
+  void add_left(const Plane& plane, const PackedBox& left) { set_left(size_++, plane, left); }
 
   /// The cheapest; no cut when there is none. Of planes of equal cost the one with the most even counts, then the
   /// first. Its `lo` and `scale` are the caller's to fill.
   Cut cheapest(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order);
 
  private:
-  struct Candidate {
-    uint32_t choice;
-    float limit;
-    uint32_t left_count;
-  };
   size_t size_ = 0;
-  std::vector<Candidate> candidates_;  // no shorter than `size_`; likewise:
-  std::vector<Bounds> sides_;          // left, right of each candidate
+  std::vector<Plane> planes_;  // no shorter than `size_`; likewise:
+  std::vector<Bounds> sides_;  // left, right of each candidate
   std::vector<float> measures_;
 };
 
