@@ -14,9 +14,9 @@ constexpr float kLess = 1 - 0x1p-20f;  // whatever is rounded, the topmost key s
 SliceGrid::SliceGrid(const KeyBox& keys, uint32_t count) : slices(count) {
   for (int axis = 0; axis < 3; ++axis) {
     lo.at[axis] = keys.lo.at[axis];
-    const float candidate = static_cast<float>(count) * kLess / keys.length(axis);
-    // Not for lengths of 0 or so tiny that the quotient overflows.
-    scale.at[axis] = candidate <= std::numeric_limits<float>::max() ? candidate : 0;
+    const float length = keys.length(axis), candidate = static_cast<float>(count) * kLess / length;
+    // Not for lengths of 0, of either sign, or so tiny that the quotient overflows.
+    scale.at[axis] = length > 0 && candidate <= std::numeric_limits<float>::max() ? candidate : 0;
   }
 }
 
