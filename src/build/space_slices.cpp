@@ -43,21 +43,11 @@ void SpaceSlices::add(const SpaceGrid& grid, std::span<const Reference> referenc
       const auto first = static_cast<uint32_t>(static_cast<int32_t>(lower < kTop ? lower : kTop));
       const auto last = static_cast<uint32_t>(static_cast<int32_t>(upper < kTop ? upper : kTop));
       const uint32_t end = std::max(first, last);
+      slices[first].lo = std::min(slices[first].lo, reference.box.lanes.at[axis]);
       ++slices[first].entries;
+      slices[end].hi = std::max(slices[end].hi, -reference.box.lanes.at[axis + 4]);
       ++slices[end].exits;
-      if (first == end) {
-        slices[first].box.extend(reference.box);
-        continue;
-      }
-      PackedBox part = reference.box;
-      for (uint32_t slice = first; slice < end; ++slice) {
-        const float plane = grid.plane(axis, slice + 1);
-        part.lanes.at[axis + 4] = -plane;
-        slices[slice].box.extend(part);
-        part.lanes.at[axis] = plane;
-      }
-      part.lanes.at[axis + 4] = reference.box.lanes.at[axis + 4];
-      slices[end].box.extend(part);
+      for (uint32_t slice = first; slice <= end; ++slice) slices[slice].box.extend(reference.box);
     }
   }
 }
@@ -67,17 +57,37 @@ void SpaceSlices::merge(const SpaceSlices& other) {
     for (size_t i = 0; i < SpaceGrid::kSlices; ++i) {
       Slice& slice = slices_[axis][i];
       slice.box.extend(other.slices_[axis][i].box);
+      slice.lo = std::min(slice.lo, other.slices_[axis][i].lo);
+      slice.hi = std::max(slice.hi, other.slices_[axis][i].hi);
       slice.entries += other.slices_[axis][i].entries;
       slice.exits += other.slices_[axis][i].exits;
     }
 }
 
+/// What references leave in each slice: those that cross a plane reach up to it on both of its sides.
+std::array<PackedBox, SpaceGrid::kSlices> SpaceSlices::boxes_of(const AxisSlices& slices, int axis,
+                                                                const SpaceGrid& grid) {
+  std::array<PackedBox, SpaceGrid::kSlices> boxes;
+  uint32_t crossing = 0;
+  float lo = kInf;  // of those that cross the plane below
+  for (uint32_t i = 0; i < SpaceGrid::kSlices; ++i) {
+    crossing += slices[i].entries - slices[i].exits;
+    const float plane = grid.plane(static_cast<size_t>(axis), i + 1);
+    boxes[i] = slices[i].box;
+    boxes[i].set_lo(axis, std::min(slices[i].lo, lo));
+    boxes[i].set_hi(axis, std::max(slices[i].hi, crossing > 0 ? plane : -kInf));
+    lo = crossing > 0 ? plane : kInf;
+  }
+  return boxes;
+}
+
 void SpaceSlices::sweep(const NodeContext& node, const AxisChoice& axis, const SpaceGrid& grid) {
   const auto& slices = slices_[static_cast<size_t>(axis.axis)];
+  const std::array<PackedBox, SpaceGrid::kSlices> boxes = boxes_of(slices, axis.axis, grid);
   std::array<PackedBox, SpaceGrid::kSlices> above;  // of this slice and all after it
   std::array<uint32_t, SpaceGrid::kSlices> exits{};
   for (size_t i = SpaceGrid::kSlices; i-- > 0;) {
-    above[i] = slices[i].box;
+    above[i] = boxes[i];
     exits[i] = slices[i].exits;
     if (i + 1 == SpaceGrid::kSlices) continue;
     above[i].extend(above[i + 1]);
@@ -86,7 +96,7 @@ void SpaceSlices::sweep(const NodeContext& node, const AxisChoice& axis, const S
   PackedBox below;
   uint32_t entries = 0;
   for (uint32_t i = 0; i + 1 < SpaceGrid::kSlices; ++i) {
-    below.extend(slices[i].box);
+    below.extend(boxes[i]);
     entries += slices[i].entries;
     const uint32_t left = entries, right = exits[i + 1];
     if (left == 0 || right == 0 || left >= node.count || right >= node.count) continue;

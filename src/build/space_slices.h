@@ -36,9 +36,11 @@ class SpaceSlices {
 
  private:
   struct Slice {
-    PackedBox box;
+    PackedBox box;                    // of whole boxes; not along the slices' own axis. Along that:
+    float lo = kInf, hi = -kInf;      // the least of what begins here, the greatest of what ends here
     uint32_t entries = 0, exits = 0;  // references that begin here, that end here
   };
+  using AxisSlices = std::array<Slice, SpaceGrid::kSlices>;
   struct Candidate {
     AxisChoice axis;
     float plane;
@@ -46,7 +48,9 @@ class SpaceSlices {
   };
   void sweep(const NodeContext& node, const AxisChoice& axis, const SpaceGrid& grid);
 
-  std::array<std::array<Slice, SpaceGrid::kSlices>, 3> slices_;
+  static std::array<PackedBox, SpaceGrid::kSlices> boxes_of(const AxisSlices& slices, int axis, const SpaceGrid& grid);
+
+  std::array<AxisSlices, 3> slices_;
   std::vector<Candidate> candidates_;
   std::vector<Bounds> sides_;
   std::vector<float> measures_;
