@@ -33,13 +33,6 @@ struct alignas(16) FourInts {
 #define RAYGRAIN_LANES _Pragma("GCC ivdep") _Pragma("GCC unroll 1")
 #endif
 
-inline EightFloats lesser(const EightFloats& a, const EightFloats& b) {
-  EightFloats result;
-  RAYGRAIN_LANES
-  for (int i = 0; i < 8; ++i) result.at[i] = a.at[i] < b.at[i] ? a.at[i] : b.at[i];
-  return result;
-}
-
 /// A box as (lo, -, -hi, -): eight minima extend it.
 struct PackedBox {
   EightFloats lanes{{kInf, kInf, kInf, 0, kInf, kInf, kInf, 0}};
@@ -52,7 +45,10 @@ struct PackedBox {
   float hi(int axis) const { return -lanes.at[axis + 4]; }
   void set_lo(int axis, float value) { lanes.at[axis] = value; }
   void set_hi(int axis, float value) { lanes.at[axis + 4] = -value; }
-  void extend(const PackedBox& other) { lanes = lesser(other.lanes, lanes); }
+  void extend(const PackedBox& other) {  // in place, or GCC keeps what is extended in a loop in memory
+    RAYGRAIN_LANES
+    for (int i = 0; i < 8; ++i) lanes.at[i] = other.lanes.at[i] < lanes.at[i] ? other.lanes.at[i] : lanes.at[i];
+  }
 };
 
 /// The box of keys. The fourth numbers say nothing.

@@ -26,26 +26,27 @@ void CutCandidates::clear(size_t room) {
   planes_.resize(room);
   sides_.resize(2 * room);
   measures_.resize(2 * room);
+  costs_.resize(room);
 }
 
 Cut CutCandidates::cheapest(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order) {
   Cut best;
   if (size_ == 0) return best;
   strategy.measure({sides_.data(), 2 * size_}, {measures_.data(), 2 * size_}, node);
-  size_t winner = size_;
-  uint32_t larger_side = 0;
   for (size_t i = 0; i < size_; ++i) {
     const uint32_t left = planes_[i].left_count, right = node.count - left;
-    const double cost =
-        static_cast<double>(measures_[2 * i]) * left + static_cast<double>(measures_[2 * i + 1]) * right;
-    if (cost > best.cost) continue;
-    const uint32_t larger = std::max(left, right);
-    if (cost == best.cost && larger >= larger_side) continue;
+    costs_[i] = static_cast<double>(measures_[2 * i]) * left + static_cast<double>(measures_[2 * i + 1]) * right;
+    best.cost = std::min(best.cost, costs_[i]);
+  }
+  size_t winner = 0;
+  uint32_t larger_side = node.count;
+  for (size_t i = 0; i < size_; ++i) {
+    if (costs_[i] != best.cost) continue;
+    const uint32_t larger = std::max(planes_[i].left_count, node.count - planes_[i].left_count);
+    if (larger >= larger_side) continue;
     winner = i;
-    best.cost = cost;
     larger_side = larger;
   }
-  if (winner == size_) return best;
   const Plane& plane = planes_[winner];
   const AxisChoice& axis = order.choices[plane.choice];
   best.kind = Cut::Kind::kKeys;

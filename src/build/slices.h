@@ -69,6 +69,7 @@ class CutCandidates {
   std::vector<Plane> planes_;  // no shorter than `size_`; likewise:
   std::vector<Bounds> sides_;  // left, right of each candidate
   std::vector<float> measures_;
+  std::vector<double> costs_;
 };
 
 /// Counts and boxes per axis and slice; one per chunk of references. Keeps its memory.
