@@ -173,12 +173,17 @@ Cut best_cut_of_small(std::span<const Reference> references, const ActiveStrateg
   std::array<const Reference*, kSmallNode> sorted{};
   for (uint32_t choice = 0; choice < static_cast<uint32_t>(order.count); ++choice) {
     const int axis = order.choices[choice].axis;
+    std::array<float, kSmallNode> keys{};
+    std::array<size_t, kSmallNode> places{};
     for (size_t i = 0; i < count; ++i) {
-      size_t place = i;
-      for (; place > 0 && references[i].key(axis) < sorted[place - 1]->key(axis); --place)
-        sorted[place] = sorted[place - 1];
-      sorted[place] = &references[i];
+      keys[i] = references[i].key(axis);
+      for (size_t k = 0; k < i; ++k) {  // equal keys keep their order; without jumps
+        const size_t is_less = keys[i] < keys[k] ? 1 : 0;
+        places[k] += is_less;
+        places[i] += 1 - is_less;
+      }
     }
+    for (size_t i = 0; i < count; ++i) sorted[places[i]] = &references[i];
     const size_t first = candidates.size();
     PackedBox side;
     for (uint32_t i = 1; i < count; ++i) {
