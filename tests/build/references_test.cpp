@@ -31,6 +31,7 @@ std::vector<BuildOptions> settings(const std::vector<Bounds>& bounds) {
 
 std::vector<Vec3> centers_of(const std::vector<Bounds>& bounds) {
   std::vector<Vec3> centers;
+  centers.reserve(bounds.size());
   for (const Bounds& box : bounds) centers.push_back(center(box));
   return centers;
 }
