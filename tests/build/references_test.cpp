@@ -56,7 +56,7 @@ void expect_one_tree(const std::vector<Bounds>& bounds) {
 }
 
 TEST(References, NeedNoKeysForMiddlesOfBoxes) {
-  for (const size_t count : {1, 2, 9, 300, 40000}) {
+  for (const size_t count : {1u, 2u, 9u, 300u, 40000u}) {
     SCOPED_TRACE(count);
     expect_one_tree(random_prims(count, count).bounds);
   }
