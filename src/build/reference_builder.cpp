@@ -40,6 +40,14 @@ Vec3 put(const Input& input, size_t i, KeyedReference& reference) {
   return input.centroids[i];
 }
 
+/// Whether references need no keys of their own: sums of two coordinates and the sums' distances stay in float's range,
+/// and so do numbers with the bits of ids.
+bool need_no_keys(const Input& input) {
+  constexpr float kMost = std::numeric_limits<float>::max() / 4;
+  return input.centroids.empty() && input.bounds.size() < std::bit_cast<uint32_t>(kInf) &&
+         contains(Bounds{{-kMost, -kMost, -kMost}, {kMost, kMost, kMost}}, input.reach);
+}
+
 }  // namespace
 
 template <class Reference>
@@ -237,14 +245,6 @@ Bvh ReferenceBuilder<Reference>::assemble(std::vector<Piece>& pieces, BuildLog* 
     }
   });
   return bvh;
-}
-
-/// Whether references need no keys of their own: sums of two coordinates and the sums' distances stay in float's range,
-/// and so do numbers with the bits of ids.
-bool need_no_keys(const Input& input) {
-  constexpr float kMost = std::numeric_limits<float>::max() / 4;
-  return input.centroids.empty() && input.bounds.size() < std::bit_cast<uint32_t>(kInf) &&
-         contains(Bounds{{-kMost, -kMost, -kMost}, {kMost, kMost, kMost}}, input.reach);
 }
 
 bool has_references(const Input& input, const BuildStrategy& strategy) {

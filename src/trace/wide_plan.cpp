@@ -23,7 +23,7 @@ WidePlan::WidePlan(const Bvh& tree, const WideOptions& options, const WideForm& 
   validate(options, form.width);
   copy_binary();
   measure_nodes();
-  costs_ = Buffer<float>(binary_.size() * form_.width);
+  costs_ = Buffer<float>(binary_.size() * form_.width + 1);
   for (size_t i = binary_.size(); i-- > 0;) price(i);
   plan();
 }

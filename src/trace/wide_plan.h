@@ -73,8 +73,8 @@ class WidePlan {
     return i < tree_.nodes.size() ? tree_.nodes[i].bounds : halves_[i - tree_.nodes.size()];
   }
   /// [n]: the cost of the node's triangles in at most n places; n from 1 to the form's width.
-  float* costs(size_t i) { return costs_.elements().data() + i * form_.width - 1; }
-  const float* costs(size_t i) const { return costs_.elements().data() + i * form_.width - 1; }
+  float* costs(size_t i) { return costs_.elements().data() + i * form_.width; }
+  const float* costs(size_t i) const { return costs_.elements().data() + i * form_.width; }
   float node_cost(size_t i) const;
   float leaf_cost(size_t i) const;
   float split_cost(size_t i, size_t places, size_t left_places) const;
@@ -94,7 +94,7 @@ class WidePlan {
   std::vector<Binary> binary_;
   std::vector<Bounds> halves_;  // of leaves; their boxes
   std::vector<float> measures_;
-  Buffer<float> costs_;  // `width` for each node
+  Buffer<float> costs_;  // `width` for each node, behind one that is not used
   std::vector<WideItem> items_;
   size_t nodes_ = 0, leaves_ = 0;
   uint64_t node_bytes_ = 0, leaf_bytes_ = 0;
