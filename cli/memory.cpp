@@ -13,7 +13,7 @@ namespace raygrain::cli {
 namespace {
 
 // Bytes a triangle, measured on a terrain of 980,000 triangles (peak of the process, less the mesh).
-constexpr double kSubset = 190, kBinned = 250, kSpatial = 320;  // a builder, with its log and the finished tree
+constexpr double kSubset = 190, kBinned = 210, kSpatial = 250;  // a builder, with its log and the finished tree
 constexpr double kArea = 300;      // the local tree in both forms and the coverage, beside the global tree
 constexpr double kKeptTree = 100;  // one of several finished trees
 

@@ -6,6 +6,8 @@ target_compile_features(raygrain_options INTERFACE cxx_std_20)
 target_compile_options(raygrain_options INTERFACE -Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off)
 # GCC 12 leaves out the rounding to float where it makes vectors of neighbouring double -> float -> double conversions.
 target_compile_options(raygrain_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>)
+# What calls what within a library stays so: GCC may put calls in line in code for shared libraries, too, as Clang does.
+target_compile_options(raygrain_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-fno-semantic-interposition>)
 if(RAYGRAIN_SANITIZE)
   target_compile_options(raygrain_options INTERFACE -fsanitize=${RAYGRAIN_SANITIZE} -fno-omit-frame-pointer
                                                    -fno-sanitize-recover=all)

@@ -97,10 +97,12 @@ class BinnedBuilder {
 
 Bvh build_binned(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                  BuildLog* log) {
-  return builder::timed_build(bounds, centroids, options, log, [&](const Input& input, builder::Laps& laps) {
-    return builder::ReferenceBuilder::serves(input, options.strategy)
-               ? builder::ReferenceBuilder(input, options, false).build(log)
-               : BinnedBuilder(input, options, laps).build(log);
+  validate(options);
+  const Input input = builder::checked_input(bounds, centroids, options.threads);
+  if (builder::has_references(input, options.strategy))
+    return builder::build_from_references(input, options, false, log);
+  return builder::timed_build(bounds, centroids, options, log, [&](const Input& all, builder::Laps& laps) {
+    return BinnedBuilder(all, options, laps).build(log);
   });
 }
 

@@ -1,6 +1,5 @@
 #include "build/input.h"
 
-#include <limits>
 #include <string>
 
 #include "raygrain/error.h"
@@ -12,7 +11,6 @@ namespace raygrain::builder {
 namespace {
 
 constexpr size_t kChunk = 16384;
-constexpr size_t kNone = std::numeric_limits<size_t>::max();
 
 void check_sizes(std::span<const Bounds> bounds, std::span<const Vec3> centroids) {
   if (!centroids.empty() && bounds.size() != centroids.size())
@@ -28,41 +26,57 @@ bool is_good(const Bounds& box) {
   return is_finite(box.lo) && is_finite(box.hi) && !is_empty(box);
 }
 
-[[noreturn]] void refuse(const Bounds& box, size_t i) {
-  if (!is_good(box))
+[[noreturn]] void refuse_first_bad(const Input& input, size_t from) {
+  const auto is_bad_centroid = [&](size_t i) { return !input.centroids.empty() && !is_finite(input.centroids[i]); };
+  size_t i = from;
+  while (is_good(input.bounds[i]) && !is_bad_centroid(i)) ++i;
+  if (!is_good(input.bounds[i]))
     throw Error(ErrorCode::kUsage, "bounds[" + std::to_string(i) + "]", "box is empty or not finite",
                 "give each primitive a finite box");
   throw Error(ErrorCode::kUsage, "centroids[" + std::to_string(i) + "]", "centroid is not finite",
               "give each primitive a finite centroid");
 }
 
+/// The box of primitives [begin, end), empty where one of them is bad: a box with all of lo <= hi has no NaN, and what
+/// is infinite shows in the box of all.
+Bounds reach_of_good(const Input& input, size_t begin, size_t end) {
+  Bounds reach;
+  bool good = true;
+  for (size_t i = begin; i < end; ++i) {
+    const Bounds& box = input.bounds[i];
+    reach.extend(box);
+    good &= static_cast<int>(box.lo.x <= box.hi.x) & static_cast<int>(box.lo.y <= box.hi.y) &
+            static_cast<int>(box.lo.z <= box.hi.z);
+  }
+  if (!input.centroids.empty())
+    for (size_t i = begin; i < end; ++i) {
+      reach.extend(input.centroids[i]);
+      good &= is_finite(input.centroids[i]);
+    }
+  return good && is_finite(reach.lo) && is_finite(reach.hi) ? reach : Bounds{};
+}
+
 }  // namespace
 
-Input checked_input(std::span<const Bounds> bounds, std::span<const Vec3> centroids, std::vector<Vec3>& centers,
-                    unsigned threads) {
+Input checked_input(std::span<const Bounds> bounds, std::span<const Vec3> centroids, unsigned threads) {
   check_sizes(bounds, centroids);
-  struct Part {
-    Bounds reach;
-    size_t bad = kNone;
-  };
-  std::vector<Part> parts((bounds.size() + kChunk - 1) / kChunk);
-  if (centroids.empty()) centers.resize(bounds.size());
-  parallel_for(bounds.size(), kChunk, threads, [&](size_t begin, size_t end) {
-    Part part;
-    for (size_t i = begin; i < end && part.bad == kNone; ++i) {
-      const Vec3 centroid = centroids.empty() ? centers[i] = center(bounds[i]) : centroids[i];
-      part.reach.extend(bounds[i]);
-      part.reach.extend(centroid);
-      if (!is_good(bounds[i]) || !is_finite(centroid)) part.bad = i;
-    }
-    parts[begin / kChunk] = part;
-  });
-  Input input{bounds, centroids.empty() ? std::span<const Vec3>(centers) : centroids, {}};
-  for (const Part& part : parts) {
-    if (part.bad != kNone) refuse(bounds[part.bad], part.bad);
-    input.reach.extend(part.reach);
+  Input input{bounds, centroids, {}};
+  std::vector<Bounds> parts((bounds.size() + kChunk - 1) / kChunk);
+  parallel_for(bounds.size(), kChunk, threads,
+               [&](size_t begin, size_t end) { parts[begin / kChunk] = reach_of_good(input, begin, end); });
+  for (size_t part = 0; part < parts.size(); ++part) {
+    if (is_empty(parts[part])) refuse_first_bad(input, part * kChunk);
+    input.reach.extend(parts[part]);
   }
   return input;
+}
+
+std::vector<Vec3> box_centers(std::span<const Bounds> bounds, unsigned threads) {
+  std::vector<Vec3> centers(bounds.size());
+  parallel_for(bounds.size(), kChunk, threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) centers[i] = center(bounds[i]);
+  });
+  return centers;
 }
 
 }  // namespace raygrain::builder

@@ -1,6 +1,7 @@
 #include "build/reference_builder.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "base/parallel.h"
 #include "base/timer.h"
@@ -28,39 +29,57 @@ void add_scaled(BuildTimes& times, const std::vector<Piece>& pieces, double seco
     times.*part += sum.*part * (seconds / sum.total);
 }
 
+/// Writes one reference, numbers one by one; its key. To write lanes and read them at once as a vector would be slow.
+Vec3 put(const Input& input, size_t i, Reference& reference) {
+  const Bounds& box = input.bounds[i];
+  reference = Reference::of(box, static_cast<uint32_t>(i));
+  return box.lo + box.hi;
+}
+Vec3 put(const Input& input, size_t i, KeyedReference& reference) {
+  reference = KeyedReference::of(input.bounds[i], input.centroids[i], static_cast<uint32_t>(i));
+  return input.centroids[i];
+}
+
+/// Whether references need no keys of their own: sums of two coordinates and the sums' distances stay in float's range,
+/// and so do numbers with the bits of ids.
+bool need_no_keys(const Input& input) {
+  constexpr float kMost = std::numeric_limits<float>::max() / 4;
+  return input.centroids.empty() && input.bounds.size() < std::bit_cast<uint32_t>(kInf) &&
+         contains(Bounds{{-kMost, -kMost, -kMost}, {kMost, kMost, kMost}}, input.reach);
+}
+
 }  // namespace
 
-ReferenceBuilder::ReferenceBuilder(const Input& input, const BuildOptions& options, bool spatial)
+template <class Reference>
+ReferenceBuilder<Reference>::ReferenceBuilder(const Input& input, const BuildOptions& options, bool spatial)
     : input_(input),
       options_(options),
       spatial_(spatial),
       strategy_(options.strategy, options.parameters, options.costs),
       monitor_(options.progress, input.bounds.size()) {}
 
-bool ReferenceBuilder::serves(const Input& input, const BuildStrategy& strategy) {
-  if (strategy.cost || strategy.planes || strategy.partition || strategy.stop) return false;
-  return input.bounds.empty() || is_finite(extent(input.reach));
-}
-
-void ReferenceBuilder::fill(std::span<Reference> references, PackedBox& box, PackedBox& keys) const {
+template <class Reference>
+void ReferenceBuilder<Reference>::fill(std::span<Reference> references, Bounds& box, KeyBox& keys) const {
   const size_t count = input_.bounds.size();
-  std::vector<std::array<PackedBox, 2>> boxes((count + kChunk - 1) / kChunk);
+  std::vector<std::array<Bounds, 2>> chunks((count + kChunk - 1) / kChunk);
   parallel_for(count, kChunk, options_.threads, [&](size_t begin, size_t end) {
-    PackedBox all, all_keys;
+    Bounds all, all_keys;
     for (size_t i = begin; i < end; ++i) {
-      references[i] = Reference::of(input_.bounds[i], input_.centroids[i], static_cast<uint32_t>(i));
-      all.extend(references[i].box);
-      all_keys.extend(references[i].key_box());
+      all.extend(input_.bounds[i]);
+      all_keys.extend(put(input_, i, references[i]));
     }
-    boxes[begin / kChunk] = {all, all_keys};
+    chunks[begin / kChunk] = {all, all_keys};
   });
-  for (const auto& [all, all_keys] : boxes) {
-    box.extend(all);
-    keys.extend(all_keys);
+  Bounds all_keys;
+  for (const auto& [part, part_keys] : chunks) {
+    box.extend(part);
+    all_keys.extend(part_keys);
   }
+  keys = KeyBox::of(all_keys);
 }
 
-Bvh ReferenceBuilder::build(BuildLog* log) {
+template <class Reference>
+Bvh ReferenceBuilder<Reference>::build(BuildLog* log) {
   Laps laps(log ? &log->times : nullptr);
   if (input_.bounds.empty()) return {};
   logging_ = log != nullptr;
@@ -68,12 +87,11 @@ Bvh ReferenceBuilder::build(BuildLog* log) {
   const auto extra =
       static_cast<size_t>(spatial_ ? static_cast<double>(options_.spatial.budget) * static_cast<double>(count) : 0);
   const size_t room = std::min(count + extra, size_t{1} << 31);
-  first_ = Buffer<Reference>(room);
-  second_ = Buffer<Reference>(room);
-  PackedBox box;
+  both_ = Buffer<Reference>(2 * room);
+  Bounds box;
   OpenRange root;
-  fill(first_.elements(), box, root.keys);
-  root.context = root_context(box.unpacked(), static_cast<uint32_t>(count), options_.seed);
+  fill(buffer(false), box, root.keys);
+  root.context = root_context(box, static_cast<uint32_t>(count), options_.seed);
   root.room = room;
   strategy_.set_total(root.context);
   root_measure_ = root.measure = strategy_.measure(root.context.bounds, root.context);
@@ -87,14 +105,15 @@ Bvh ReferenceBuilder::build(BuildLog* log) {
   });
   laps.skip();
   if (log) add_scaled(log->times, pieces, timer.seconds());
-  if (log) log->peak_bytes = first_.bytes() + second_.bytes();
+  if (log) log->peak_bytes = both_.bytes();
   Bvh bvh = assemble(pieces, log);
   laps.lap(&BuildTimes::nodes);
   return bvh;
 }
 
 /// Splits nodes until each is small enough for one thread.
-void ReferenceBuilder::split_top(const OpenRange& root, Laps& laps) {
+template <class Reference>
+void ReferenceBuilder<Reference>::split_top(const OpenRange& root, Laps& laps) {
   top_.assign(1, {});
   std::vector<OpenRange> open{root};
   Scratch scratch;
@@ -123,7 +142,8 @@ void ReferenceBuilder::split_top(const OpenRange& root, Laps& laps) {
 }
 
 /// Depth first, left before right; children are allocated in pairs.
-Piece ReferenceBuilder::build_piece(const OpenRange& root) const {
+template <class Reference>
+Piece ReferenceBuilder<Reference>::build_piece(const OpenRange& root) const {
   Piece piece;
   Laps laps(logging_ ? &piece.times : nullptr);
   piece.nodes.reserve(2 * std::min<size_t>(root.room, size_t{root.context.count} + root.context.count / 4));
@@ -162,7 +182,8 @@ Piece ReferenceBuilder::build_piece(const OpenRange& root) const {
   return piece;
 }
 
-Bvh ReferenceBuilder::assemble(std::vector<Piece>& pieces, BuildLog* log) const {
+template <class Reference>
+Bvh ReferenceBuilder<Reference>::assemble(std::vector<Piece>& pieces, BuildLog* log) const {
   struct Place {
     uint32_t root, first_node, first_prim;
   };
@@ -223,6 +244,27 @@ Bvh ReferenceBuilder::assemble(std::vector<Piece>& pieces, BuildLog* log) const 
       piece = {};
     }
   });
+  return bvh;
+}
+
+bool has_references(const Input& input, const BuildStrategy& strategy) {
+  if (strategy.cost || strategy.planes || strategy.partition || strategy.stop) return false;
+  return input.bounds.empty() || is_finite(extent(input.reach));
+}
+
+Bvh build_from_references(const Input& input, const BuildOptions& options, bool spatial, BuildLog* log) {
+  if (log) *log = {};
+  const Timer timer;
+  Bvh bvh;
+  if (need_no_keys(input)) {
+    bvh = ReferenceBuilder<Reference>(input, options, spatial).build(log);
+  } else {
+    Input keyed = input;
+    std::vector<Vec3> centers;
+    if (input.centroids.empty()) keyed.centroids = centers = box_centers(input.bounds, options.threads);
+    bvh = ReferenceBuilder<KeyedReference>(keyed, options, spatial).build(log);
+  }
+  if (log) log->times.total = timer.seconds();
   return bvh;
 }
 

@@ -20,7 +20,7 @@ namespace raygrain::builder {
 struct OpenRange {
   NodeContext context;
   float measure = 0;
-  PackedBox keys;
+  KeyBox keys;
   size_t begin = 0, room = 0;
   bool in_second = false;
   uint32_t index = 0;  // in the nodes of its subtree, or of the top
@@ -34,14 +34,11 @@ struct Piece {
   BuildTimes times;
 };
 
+template <class Reference>
 class ReferenceBuilder {
  public:
   /// `spatial` asks for splits that cut primitives.
   ReferenceBuilder(const Input& input, const BuildOptions& options, bool spatial);
-
-  /// Whether this builder can serve the options: only measure and orientation are replaced, and keys are so near to
-  /// each other that float can tell their distances.
-  static bool serves(const Input& input, const BuildStrategy& strategy);
 
   Bvh build(BuildLog* log);
 
@@ -57,7 +54,7 @@ class ReferenceBuilder {
     int64_t piece = -1;
   };
 
-  void fill(std::span<Reference> references, PackedBox& box, PackedBox& keys) const;
+  void fill(std::span<Reference> references, Bounds& box, KeyBox& keys) const;
   void split_top(const OpenRange& root, Laps& laps);
   Piece build_piece(const OpenRange& root) const;
   bool split(const OpenRange& node, Scratch& scratch, unsigned threads, Children& children, NodeLog& note,
@@ -71,12 +68,15 @@ class ReferenceBuilder {
   Cut halve(const OpenRange& node) const;
   bool part_by_space(const OpenRange& node, Cut& cut, double limit, Scratch& scratch, unsigned threads,
                      Children& children) const;
-  bool price_sides(const OpenRange& node, Cut& cut, std::span<const SpaceSides> chunks) const;
+  bool price_sides(const OpenRange& node, Cut& cut, std::span<const SpaceSides<Reference>> chunks) const;
   static bool fits(const OpenRange& node, const Cut& cut);
   void part_by_keys(const OpenRange& node, const Cut& cut, Scratch& scratch, unsigned threads,
                     Children& children) const;
-  Children open_children(const OpenRange& node, const Cut& cut) const;
-  std::span<Reference> buffer(bool second) const { return second ? second_.elements() : first_.elements(); }
+  void open_children(const OpenRange& node, const Cut& cut, Children& children) const;
+  std::span<Reference> buffer(bool second) const {
+    const size_t room = both_.size() / 2;
+    return both_.elements().subspan(second ? room : 0, room);
+  }
   std::span<const Reference> references_of(const OpenRange& node) const {
     return std::span<const Reference>(buffer(node.in_second)).subspan(node.begin, node.context.count);
   }
@@ -86,12 +86,19 @@ class ReferenceBuilder {
   const BuildOptions& options_;
   const bool spatial_;
   ActiveStrategy strategy_;
-  Buffer<Reference> first_, second_;  // split writes disjoint ranges from several threads
+  Buffer<Reference> both_;  // one after the other; split writes disjoint ranges from several threads
   std::vector<TopNode> top_;
   std::vector<OpenRange> subtrees_;
   float root_measure_ = 0;
   bool logging_ = false;
   mutable Monitor monitor_;
 };
+
+/// Whether this builder can serve the options: only measure and orientation are replaced, and keys are so near to each
+/// other that float can tell their distances.
+bool has_references(const Input& input, const BuildStrategy& strategy);
+
+/// With the form of references that the input's keys need; the log starts anew and gets the whole time.
+Bvh build_from_references(const Input& input, const BuildOptions& options, bool spatial, BuildLog* log);
 
 }  // namespace raygrain::builder

@@ -34,44 +34,52 @@ struct SliceGrid {
   uint32_t slices = 0;
 
   SliceGrid() = default;
-  SliceGrid(const PackedBox& keys, uint32_t count);
+  SliceGrid(const KeyBox& keys, uint32_t count);
 };
 
 /// Planes and what they leave on their sides, of all axes of one node. Keeps its memory.
 class CutCandidates {
  public:
-  void clear();
-  /// `choice`: number of the axis in the orientation's order. The right side follows.
-  void add_left(uint32_t choice, float limit, uint32_t left_count, const PackedBox& left) {
-    candidates_.push_back({choice, limit, left_count});
-    sides_.push_back(left.unpacked());
-    sides_.emplace_back();
+  struct Plane {
+    uint32_t choice;  // number of the axis in the orientation's order
+    float limit;
+    uint32_t left_count;
+  };
+
+  /// None is left; there is room for so many.
+  void clear(size_t room);
+  size_t size() const { return size_; }
+  void resize(size_t size) { size_ = size; }
+  const Plane& plane(size_t candidate) const { return planes_[candidate]; }
+
+  /// Of any candidate that there is room for.
+  void set_left(size_t candidate, const Plane& plane, const PackedBox& left) {
+    planes_[candidate] = plane;
+    sides_[2 * candidate] = left.unpacked();
   }
   void set_right(size_t candidate, const PackedBox& right) { sides_[2 * candidate + 1] = right.unpacked(); }
-  size_t size() const { return candidates_.size(); }
-  uint32_t left_count(size_t candidate) const { return candidates_[candidate].left_count; }
+  void add_left(const Plane& plane, const PackedBox& left) { set_left(size_++, plane, left); }
 
   /// The cheapest; no cut when there is none. Of planes of equal cost the one with the most even counts, then the
   /// first. Its `lo` and `scale` are the caller's to fill.
   Cut cheapest(const ActiveStrategy& strategy, const NodeContext& node, const AxisOrder& order);
 
  private:
-  struct Candidate {
-    uint32_t choice;
-    float limit;
-    uint32_t left_count;
-  };
-  std::vector<Candidate> candidates_;
+  size_t size_ = 0;
+  std::vector<Plane> planes_;  // no shorter than `size_`; likewise:
   std::vector<Bounds> sides_;  // left, right of each candidate
   std::vector<float> measures_;
+  std::vector<double> costs_;
 };
 
 /// Counts and boxes per axis and slice; one per chunk of references. Keeps its memory.
 class Slices {
  public:
   void clear(uint32_t slices);
+  template <class Reference>
   void add(const SliceGrid& grid, std::span<const Reference> references);
   /// The same for one axis alone: in a third of the time.
+  template <class Reference>
   void add_along(int axis, const SliceGrid& grid, std::span<const Reference> references);
   void merge(const Slices& other);
 
@@ -83,7 +91,7 @@ class Slices {
                CutCandidates& candidates) const;
 
  private:
-  void sweep(const AxisChoice& axis, uint32_t choice, uint32_t total, CutCandidates& candidates) const;
+  void sweep(int axis, uint32_t choice, CutCandidates& candidates) const;
 
   uint32_t slices_ = 0;
   std::vector<PackedBox> boxes_;  // axis-major
@@ -93,6 +101,7 @@ class Slices {
 /// Nodes of up to this many references are parted at the best plane between any two keys: that takes no longer than
 /// slices, and misses nothing.
 inline constexpr uint32_t kSmallNode = 8;
+template <class Reference>
 Cut best_cut_of_small(std::span<const Reference> references, const ActiveStrategy& strategy, const NodeContext& node,
                       const AxisOrder& order, CutCandidates& candidates);
 

@@ -7,15 +7,12 @@ namespace raygrain::builder {
 namespace {
 
 /// The part of a reference's primitive between two planes: within the reference's box, whatever the callback says.
+template <class Reference>
 Bounds part_between(const Reference& reference, int axis, float lo, float hi, const ClipPrimitive& clip) {
   Bounds box = reference.box.unpacked();
   box.lo[axis] = std::max(box.lo[axis], lo);
   box.hi[axis] = std::min(box.hi[axis], hi);
   return intersected(box, clip(reference.id(), box));
-}
-
-Reference with_box(const Reference& reference, const Bounds& box) {
-  return Reference::of(box, center(box), reference.id());
 }
 
 }  // namespace
@@ -35,6 +32,7 @@ void SpaceSlices::clear() {
   for (auto& axis : slices_) axis.fill(Slice{});
 }
 
+template <class Reference>
 void SpaceSlices::add(const SpaceGrid& grid, std::span<const Reference> references) {
   constexpr float kTop = SpaceGrid::kSlices - 1, kLess = 1 - 0x1p-20f;  // an end on a plane lies below it
   for (const Reference& reference : references) {
@@ -45,21 +43,11 @@ void SpaceSlices::add(const SpaceGrid& grid, std::span<const Reference> referenc
       const auto first = static_cast<uint32_t>(static_cast<int32_t>(lower < kTop ? lower : kTop));
       const auto last = static_cast<uint32_t>(static_cast<int32_t>(upper < kTop ? upper : kTop));
       const uint32_t end = std::max(first, last);
+      slices[first].lo = std::min(slices[first].lo, reference.box.lanes.at[axis]);
       ++slices[first].entries;
+      slices[end].hi = std::max(slices[end].hi, -reference.box.lanes.at[axis + 4]);
       ++slices[end].exits;
-      if (first == end) {
-        slices[first].box.extend(reference.box);
-        continue;
-      }
-      PackedBox part = reference.box;
-      for (uint32_t slice = first; slice < end; ++slice) {
-        const float plane = grid.plane(axis, slice + 1);
-        part.lanes.at[axis + 4] = -plane;
-        slices[slice].box.extend(part);
-        part.lanes.at[axis] = plane;
-      }
-      part.lanes.at[axis + 4] = reference.box.lanes.at[axis + 4];
-      slices[end].box.extend(part);
+      for (uint32_t slice = first; slice <= end; ++slice) slices[slice].box.extend(reference.box);
     }
   }
 }
@@ -69,17 +57,37 @@ void SpaceSlices::merge(const SpaceSlices& other) {
     for (size_t i = 0; i < SpaceGrid::kSlices; ++i) {
       Slice& slice = slices_[axis][i];
       slice.box.extend(other.slices_[axis][i].box);
+      slice.lo = std::min(slice.lo, other.slices_[axis][i].lo);
+      slice.hi = std::max(slice.hi, other.slices_[axis][i].hi);
       slice.entries += other.slices_[axis][i].entries;
       slice.exits += other.slices_[axis][i].exits;
     }
 }
 
+/// What references leave in each slice: those that cross a plane reach up to it on both of its sides.
+std::array<PackedBox, SpaceGrid::kSlices> SpaceSlices::boxes_of(const AxisSlices& slices, int axis,
+                                                                const SpaceGrid& grid) {
+  std::array<PackedBox, SpaceGrid::kSlices> boxes;
+  uint32_t crossing = 0;
+  float lo = kInf;  // of those that cross the plane below
+  for (uint32_t i = 0; i < SpaceGrid::kSlices; ++i) {
+    crossing += slices[i].entries - slices[i].exits;
+    const float plane = grid.plane(static_cast<size_t>(axis), i + 1);
+    boxes[i] = slices[i].box;
+    boxes[i].set_lo(axis, std::min(slices[i].lo, lo));
+    boxes[i].set_hi(axis, std::max(slices[i].hi, crossing > 0 ? plane : -kInf));
+    lo = crossing > 0 ? plane : kInf;
+  }
+  return boxes;
+}
+
 void SpaceSlices::sweep(const NodeContext& node, const AxisChoice& axis, const SpaceGrid& grid) {
   const auto& slices = slices_[static_cast<size_t>(axis.axis)];
+  const std::array<PackedBox, SpaceGrid::kSlices> boxes = boxes_of(slices, axis.axis, grid);
   std::array<PackedBox, SpaceGrid::kSlices> above;  // of this slice and all after it
   std::array<uint32_t, SpaceGrid::kSlices> exits{};
   for (size_t i = SpaceGrid::kSlices; i-- > 0;) {
-    above[i] = slices[i].box;
+    above[i] = boxes[i];
     exits[i] = slices[i].exits;
     if (i + 1 == SpaceGrid::kSlices) continue;
     above[i].extend(above[i + 1]);
@@ -88,7 +96,7 @@ void SpaceSlices::sweep(const NodeContext& node, const AxisChoice& axis, const S
   PackedBox below;
   uint32_t entries = 0;
   for (uint32_t i = 0; i + 1 < SpaceGrid::kSlices; ++i) {
-    below.extend(slices[i].box);
+    below.extend(boxes[i]);
     entries += slices[i].entries;
     const uint32_t left = entries, right = exits[i + 1];
     if (left == 0 || right == 0 || left >= node.count || right >= node.count) continue;
@@ -121,7 +129,8 @@ Cut SpaceSlices::best_cut(const ActiveStrategy& strategy, const NodeContext& nod
   return best;
 }
 
-void SpaceSides::part(const Cut& plane, std::span<const Reference> references, const ClipPrimitive& clip) {
+template <class Reference>
+void SpaceSides<Reference>::part(const Cut& plane, std::span<const Reference> references, const ClipPrimitive& clip) {
   left.clear();
   right.clear();
   torn.clear();
@@ -145,9 +154,9 @@ void SpaceSides::part(const Cut& plane, std::span<const Reference> references, c
       if (is_empty(lower) && is_empty(upper)) {
         put_left(reference);  // a callback that denies the primitive: keep it whole
       } else if (is_empty(upper)) {
-        put_left(with_box(reference, lower));
+        put_left(reference.with_box(lower));
       } else if (is_empty(lower)) {
-        put_right(with_box(reference, upper));
+        put_right(reference.with_box(upper));
       } else {
         torn.push_back({reference, lower, upper});
         left_box.extend(PackedBox::of(lower));
@@ -157,7 +166,8 @@ void SpaceSides::part(const Cut& plane, std::span<const Reference> references, c
   }
 }
 
-void SpaceSides::mend(const Cut& cut, const ActiveStrategy& strategy, const NodeContext& node) {
+template <class Reference>
+void SpaceSides<Reference>::mend(const Cut& cut, const ActiveStrategy& strategy, const NodeContext& node) {
   const auto left_measure = static_cast<double>(cut.left_measure);
   const auto right_measure = static_cast<double>(cut.right_measure);
   for (const Torn& reference : torn) {
@@ -172,10 +182,15 @@ void SpaceSides::mend(const Cut& cut, const ActiveStrategy& strategy, const Node
     } else if (all_right <= cut.cost) {
       right.push_back(reference.whole);
     } else {
-      left.push_back(with_box(reference.whole, reference.lower));
-      right.push_back(with_box(reference.whole, reference.upper));
+      left.push_back(reference.whole.with_box(reference.lower));
+      right.push_back(reference.whole.with_box(reference.upper));
     }
   }
 }
+
+template void SpaceSlices::add(const SpaceGrid&, std::span<const Reference>);
+template void SpaceSlices::add(const SpaceGrid&, std::span<const KeyedReference>);
+template struct SpaceSides<Reference>;
+template struct SpaceSides<KeyedReference>;
 
 }  // namespace raygrain::builder

@@ -26,6 +26,7 @@ struct SpaceGrid {
 class SpaceSlices {
  public:
   void clear();
+  template <class Reference>
   void add(const SpaceGrid& grid, std::span<const Reference> references);
   void merge(const SpaceSlices& other);
 
@@ -35,9 +36,11 @@ class SpaceSlices {
 
  private:
   struct Slice {
-    PackedBox box;
+    PackedBox box;                    // of whole boxes; not along the slices' own axis. Along that:
+    float lo = kInf, hi = -kInf;      // the least of what begins here, the greatest of what ends here
     uint32_t entries = 0, exits = 0;  // references that begin here, that end here
   };
+  using AxisSlices = std::array<Slice, SpaceGrid::kSlices>;
   struct Candidate {
     AxisChoice axis;
     float plane;
@@ -45,13 +48,16 @@ class SpaceSlices {
   };
   void sweep(const NodeContext& node, const AxisChoice& axis, const SpaceGrid& grid);
 
-  std::array<std::array<Slice, SpaceGrid::kSlices>, 3> slices_;
+  static std::array<PackedBox, SpaceGrid::kSlices> boxes_of(const AxisSlices& slices, int axis, const SpaceGrid& grid);
+
+  std::array<AxisSlices, 3> slices_;
   std::vector<Candidate> candidates_;
   std::vector<Bounds> sides_;
   std::vector<float> measures_;
 };
 
 /// The references of one chunk on either side of a plane, and those that it cuts.
+template <class Reference>
 struct SpaceSides {
   struct Torn {
     Reference whole;

@@ -1,7 +1,6 @@
 #include "raygrain/build.h"
 #include "raygrain/error.h"
 
-#include "base/timer.h"
 #include "build/reference_builder.h"
 
 namespace raygrain {
@@ -28,16 +27,10 @@ Bvh build_spatial(std::span<const Bounds> bounds, std::span<const Vec3> centroid
   if (!options.clip)
     throw Error(ErrorCode::kUsage, "clip", "build_spatial cannot cut primitives without a clip callback",
                 "set BuildOptions::clip, e.g. to clip_triangle_bounds of the mesh");
-  std::vector<Vec3> centers;
-  const builder::Input input = builder::checked_input(bounds, centroids, centers, options.threads);
-  if (log) *log = {};
-  const Timer timer;
+  const builder::Input input = builder::checked_input(bounds, centroids, options.threads);
   // Distances beyond float's range: no planes to cut at.
-  if (!builder::ReferenceBuilder::serves(input, options.strategy))
-    return build_binned(bounds, input.centroids, options, log);
-  Bvh bvh = builder::ReferenceBuilder(input, options, true).build(log);
-  if (log) log->times.total = timer.seconds();
-  return bvh;
+  if (!builder::has_references(input, options.strategy)) return build_binned(bounds, centroids, options, log);
+  return builder::build_from_references(input, options, true, log);
 }
 
 }  // namespace raygrain

@@ -48,7 +48,8 @@ void ActiveStrategy::set_total(const NodeContext& root) {
 void ActiveStrategy::measure(std::span<const Bounds> boxes, std::span<float> out, const NodeContext& node) const {
   strategy_.measure(boxes, out);
   bool good = true;
-  for (const float value : out) good &= value >= 0 && value <= std::numeric_limits<float>::max();
+  constexpr float kMost = std::numeric_limits<float>::max();
+  for (const float value : out) good &= (value >= 0 ? value : kInf) <= kMost;  // without jumps
   if (good) return;
   for (const float value : out)
     if (!(value >= 0 && std::isfinite(value)))

@@ -9,6 +9,7 @@
 #include "base/timer.h"
 #include "build/laps.h"
 #include "build/monitor.h"
+#include "build/nearest_leaves.h"
 #include "build/reference_builder.h"
 #include "build/strategy.h"
 
@@ -18,6 +19,7 @@ namespace {
 
 constexpr uint32_t kStep = 16;            // one of this many primitives is in the subset
 constexpr uint32_t kClusterSamples = 32;  // nodes with fewer primitives of the subset are clusters
+constexpr size_t kTogether = 16384;       // primitives that look for their clusters together
 constexpr size_t kLeast = 8192;           // fewer primitives are not worth a subset
 
 /// One primitive of every kStep in a row, at random.
@@ -28,36 +30,6 @@ std::vector<uint32_t> choose_subset(size_t count, uint64_t seed) {
   for (size_t begin = 0; begin < count; begin += kStep)
     subset.push_back(static_cast<uint32_t>(begin + random.below(std::min<size_t>(kStep, count - begin))));
   return subset;
-}
-
-/// In float: where it overflows or rounds, a primitive goes to another cluster, which is no error.
-float square_distance(const Bounds& box, Vec3 p) {
-  float sum = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const float below = box.lo[axis] - p[axis], above = p[axis] - box.hi[axis];
-    const float outside = std::max(std::max(below, above), 0.0f);
-    sum += outside * outside;
-  }
-  return sum;
-}
-
-double center_distance(const Bounds& box, Vec3 p) {
-  const Vec3d d = to_double(center(box)) - to_double(p);
-  return dot(d, d);
-}
-
-/// The leaf of the subset's tree that a point belongs to: down to the nearer box, or where it lies in both to the one
-/// with the nearer middle.
-uint32_t find_cluster(const Bvh& top, Vec3 p) {
-  uint32_t node = 0;
-  while (!top.nodes[node].is_leaf()) {
-    const uint32_t left = top.nodes[node].first, right = left + 1;
-    const Bounds &a = top.nodes[left].bounds, &b = top.nodes[right].bounds;
-    const float to_a = square_distance(a, p), to_b = square_distance(b, p);
-    const bool is_right = to_a != to_b ? to_b < to_a : center_distance(b, p) < center_distance(a, p);
-    node = is_right ? right : left;
-  }
-  return node;
 }
 
 struct Cluster {
@@ -88,13 +60,15 @@ class SubsetBuilder {
   }
 
  private:
+  Vec3 key(size_t i) const { return input_.centroids.empty() ? center(input_.bounds[i]) : input_.centroids[i]; }
+
   void build_top() {
     subset_ = choose_subset(input_.bounds.size(), options_.seed);
     std::vector<Bounds> bounds;
     std::vector<Vec3> centroids;
     for (const uint32_t i : subset_) {
       bounds.push_back(input_.bounds[i]);
-      centroids.push_back(input_.centroids[i]);
+      if (!input_.centroids.empty()) centroids.push_back(input_.centroids[i]);
     }
     BuildOptions options = options_;
     options.progress = {};
@@ -117,8 +91,13 @@ class SubsetBuilder {
     }
     const size_t count = input_.bounds.size();
     std::vector<uint32_t> places(count);
-    parallel_for(count, 4096, options_.threads, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i) places[i] = cluster_of[find_cluster(top_, input_.centroids[i])];
+    parallel_for(count, kTogether, options_.threads, [&](size_t begin, size_t end) {
+      std::vector<Vec3> keys;
+      keys.reserve(end - begin);
+      for (size_t i = begin; i < end; ++i) keys.push_back(key(i));
+      const std::span<uint32_t> leaves = std::span(places).subspan(begin, end - begin);
+      builder::NearestLeaves().find(top_, keys, leaves);
+      for (uint32_t& leaf : leaves) leaf = cluster_of[leaf];
     });
     // The subset stays where its tree put it, so no cluster is empty.
     for (size_t i = 0; i < top_.nodes.size(); ++i)
@@ -140,10 +119,9 @@ class SubsetBuilder {
     std::vector<Bounds> bounds;
     std::vector<Vec3> centroids;
     bounds.reserve(cluster.end - cluster.begin);
-    centroids.reserve(cluster.end - cluster.begin);
     for (size_t i = cluster.begin; i < cluster.end; ++i) {
       bounds.push_back(input_.bounds[members_[i]]);
-      centroids.push_back(input_.centroids[members_[i]]);
+      if (!input_.centroids.empty()) centroids.push_back(input_.centroids[members_[i]]);
     }
     BuildOptions options = options_;
     options.progress = {};
@@ -225,10 +203,9 @@ class SubsetBuilder {
 Bvh build_subset(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                  BuildLog* log) {
   validate(options);
-  std::vector<Vec3> centers;
-  const builder::Input input = builder::checked_input(bounds, centroids, centers, options.threads);
-  if (bounds.size() < kLeast || !builder::ReferenceBuilder::serves(input, options.strategy))
-    return build_binned(bounds, input.centroids, options, log);
+  const builder::Input input = builder::checked_input(bounds, centroids, options.threads);
+  if (bounds.size() < kLeast || !builder::has_references(input, options.strategy))
+    return build_binned(bounds, centroids, options, log);
   if (log) *log = {};
   const Timer timer;
   Bvh bvh = SubsetBuilder(input, options, log != nullptr).build(log);

@@ -1,4 +1,4 @@
-// What every builder does around its own work: refuse bad options and input, start its log, take the time.
+// What builders do around their own work: refuse bad options and input, start their log, take the time.
 #pragma once
 
 #include <span>
@@ -8,13 +8,14 @@
 
 namespace raygrain::builder {
 
-/// build(input, laps) -> Bvh.
+/// build(input, laps) -> Bvh. The input that it gets has all centroids.
 template <class Build>
 Bvh timed_build(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                 BuildLog* log, const Build& build) {
   validate(options);
+  Input input = checked_input(bounds, centroids, options.threads);
   std::vector<Vec3> centers;
-  const Input input = checked_input(bounds, centroids, centers, options.threads);
+  if (centroids.empty()) input.centroids = centers = box_centers(bounds, options.threads);
   if (log) *log = {};
   Laps laps(log ? &log->times : nullptr);
   Bvh bvh = build(input, laps);

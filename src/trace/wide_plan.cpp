@@ -23,86 +23,97 @@ WidePlan::WidePlan(const Bvh& tree, const WideOptions& options, const WideForm& 
   validate(options, form.width);
   copy_binary();
   measure_nodes();
+  costs_ = Buffer<float>(binary_.size() * form_.width + 1);
   for (size_t i = binary_.size(); i-- > 0;) price(i);
   plan();
 }
 
 void WidePlan::copy_binary() {
   binary_.reserve(tree_.nodes.size());
-  bounds_.reserve(tree_.nodes.size());
+  bool has_large = false;
   for (const Bvh::Node& node : tree_.nodes) {
-    binary_.push_back(node.is_leaf() ? Binary{0, 0, node.first, node.count} : Binary{node.first, node.first + 1, 0, 0});
-    bounds_.push_back(node.bounds);
+    binary_.push_back(node.is_leaf() ? Binary{0, node.first, node.count} : Binary{node.first, 0, 0});
+    has_large |= node.count > options_.max_leaf_size;
   }
-  for (size_t i = 0; i < binary_.size(); ++i) halve_leaf(i);  // the new ones come up in their turn
-  for (size_t i = binary_.size(); i-- > 0;) {
-    Binary& node = binary_[i];
-    if (node.left == 0) continue;
-    node.count = binary_[node.left].count + binary_[node.right].count;
-    node.leaves = binary_[node.left].leaves + binary_[node.right].leaves;
-  }
+  if (has_large)
+    for (size_t i = 0; i < binary_.size(); ++i) halve_leaf(i);  // the new ones come up in their turn
 }
 
 void WidePlan::halve_leaf(size_t index) {
   const Binary leaf = binary_[index];
   if (leaf.left != 0 || leaf.count <= options_.max_leaf_size) return;
-  const auto child = static_cast<uint32_t>(binary_.size());
   const uint32_t half = leaf.count / 2;
-  binary_[index] = {child, child + 1, 0, 0};
+  binary_[index] = {static_cast<uint32_t>(binary_.size()), 0, 0};
   for (const auto& [first, count] : {std::pair{leaf.first, half}, std::pair{leaf.first + half, leaf.count - half}}) {
-    Bounds box;
-    for (uint32_t k = first; k < first + count; ++k) box.extend(form_.bounds(tree_.prims[k]));
-    binary_.push_back({0, 0, first, count});
-    bounds_.push_back(box);
+    Bounds half_box;
+    for (uint32_t k = first; k < first + count; ++k) half_box.extend(form_.bounds(tree_.prims[k]));
+    binary_.push_back({0, first, count});
+    halves_.push_back(half_box);
   }
 }
 
+/// Some boxes at a time, side by side as measures want them.
 void WidePlan::measure_nodes() {
-  measures_.resize(bounds_.size());
-  options_.measure(bounds_, measures_);
-  for (size_t i = 0; i < measures_.size(); ++i)
-    if (!(measures_[i] >= 0 && std::isfinite(measures_[i])))
-      throw Error(ErrorCode::kBadHeuristic, "nodes[" + std::to_string(i) + "]",
-                  "the measure is negative or not finite");
-  const float greatest = *std::ranges::max_element(measures_);  // sums of costs must stay in range
-  if (greatest > 0)
+  constexpr size_t kAtOnce = 256;
+  measures_.resize(binary_.size());
+  std::vector<Bounds> boxes(std::min(kAtOnce, binary_.size()));
+  float greatest = 0;
+  for (size_t begin = 0; begin < measures_.size(); begin += kAtOnce) {
+    const size_t count = std::min(kAtOnce, measures_.size() - begin);
+    for (size_t k = 0; k < count; ++k) boxes[k] = box(begin + k);
+    options_.measure({boxes.data(), count}, {measures_.data() + begin, count});
+    for (size_t i = begin; i < begin + count; ++i) {
+      if (!(measures_[i] >= 0 && std::isfinite(measures_[i])))
+        throw Error(ErrorCode::kBadHeuristic, "nodes[" + std::to_string(i) + "]",
+                    "the measure is negative or not finite");
+      greatest = std::max(greatest, measures_[i]);
+    }
+  }
+  if (greatest > 0)  // sums of costs must stay in range
     for (float& measure : measures_) measure /= greatest;
-  costs_.resize(binary_.size());
 }
 
 float WidePlan::node_cost(size_t i) const {
-  return costs_[i][form_.width] + measures_[i] * options_.costs.node;
+  return costs(i)[form_.width] + measures_[i] * options_.costs.node;
 }
 float WidePlan::leaf_cost(size_t i) const {
   return measures_[i] * (options_.costs.leaf + options_.costs.triangle * static_cast<float>(binary_[i].count));
 }
 float WidePlan::split_cost(size_t i, size_t places, size_t left_places) const {
-  return costs_[binary_[i].left][left_places] + costs_[binary_[i].right][places - left_places];
+  const size_t left = binary_[i].left;
+  return costs(left)[left_places] + costs(left + 1)[places - left_places];
 }
 
 void WidePlan::price(size_t i) {
-  Costs& costs = costs_[i];
-  if (binary_[i].left == 0) {
-    costs.fill(leaf_cost(i));
-    return;
-  }
-  const size_t useful = std::min<size_t>(form_.width, binary_[i].leaves);  // more places change nothing
+  if (binary_[i].left != 0) return price_inner(i);
+  std::fill_n(costs(i) + 1, form_.width, leaf_cost(i));
+}
+
+void WidePlan::price_inner(size_t i) {
+  Binary& node = binary_[i];
+  const Binary &left = binary_[node.left], &right = binary_[node.left + 1];
+  node.count = left.count + right.count;
+  node.leaves = static_cast<uint8_t>(std::min<size_t>(kMostWidth, size_t{left.leaves} + right.leaves));
+  float* const best = costs(i);
+  const float *const left_costs = costs(node.left), *const right_costs = costs(node.left + 1);
+  const size_t useful = std::min<size_t>(form_.width, node.leaves);  // more places change nothing
   for (size_t places = 2; places <= useful; ++places) {
-    costs[places] = split_cost(i, places, 1);
-    for (size_t n = 2; n < places; ++n) costs[places] = std::min(costs[places], split_cost(i, places, n));
+    float cost = left_costs[1] + right_costs[places - 1];
+    for (size_t n = 2; n < places; ++n) cost = std::min(cost, left_costs[n] + right_costs[places - n]);
+    best[places] = cost;
   }
-  for (size_t places = useful + 1; places <= form_.width; ++places) costs[places] = costs[useful];
-  costs[1] = node_cost(i);  // from the costs of its children in places 1 ... 8
-  if (binary_[i].count <= options_.max_leaf_size && leaf_cost(i) <= costs[1]) {
-    costs[1] = leaf_cost(i);
-    binary_[i].merged = true;
+  for (size_t places = useful + 1; places <= form_.width; ++places) best[places] = best[useful];
+  best[1] = node_cost(i);  // from the costs of its children in places 1 ... 8
+  if (node.count <= options_.max_leaf_size && leaf_cost(i) <= best[1]) {
+    best[1] = leaf_cost(i);
+    node.merged = true;
   }
-  for (size_t places = 2; places <= form_.width; ++places) costs[places] = std::min(costs[places], costs[places - 1]);
+  for (size_t places = 2; places <= form_.width; ++places) best[places] = std::min(best[places], best[places - 1]);
 }
 
 /// Appends the subtrees that the triangles of `i` become in at most `places` places.
 void WidePlan::collect(uint32_t i, size_t places, std::vector<uint32_t>& roots) const {
-  while (places > 1 && costs_[i][places] == costs_[i][places - 1]) --places;
+  while (places > 1 && costs(i)[places] == costs(i)[places - 1]) --places;
   if (places == 1)
     roots.push_back(i);
   else
@@ -113,8 +124,18 @@ void WidePlan::collect_halves(uint32_t i, size_t places, std::vector<uint32_t>& 
   for (size_t n = 2; n < places; ++n)
     if (split_cost(i, places, n) < split_cost(i, places, left)) left = n;
   collect(binary_[i].left, left, roots);
-  collect(binary_[i].right, places - left, roots);
+  collect(binary_[i].left + 1, places - left, roots);
 }
+/// The most probable last: any hit takes the last first. Equal ones keep their order.
+void WidePlan::sort(std::vector<uint32_t>& roots) const {
+  for (size_t i = 1; i < roots.size(); ++i) {
+    const uint32_t root = roots[i];
+    size_t place = i;
+    for (; place > 0 && measures_[root] < measures_[roots[place - 1]]; --place) roots[place] = roots[place - 1];
+    roots[place] = root;
+  }
+}
+
 void WidePlan::plan() {
   items_.push_back({.root = 0});
   std::vector<uint32_t> pending{0}, roots;
@@ -127,8 +148,7 @@ void WidePlan::plan() {
       roots.push_back(root);  // the whole tree is one leaf: the only child of the root node
     else
       collect_halves(root, form_.width, roots);
-    // The most probable last: any hit takes the last first.
-    std::ranges::stable_sort(roots, {}, [&](uint32_t i) { return measures_[i]; });
+    sort(roots);
     plan_children(index, roots, pending);
   }
   if (node_bytes_ + leaf_bytes_ > uint64_t{1} << 43)
@@ -161,7 +181,7 @@ void WidePlan::gather(uint32_t i, std::vector<uint32_t>& ids) const {
     for (uint32_t k = node.first; k < node.first + node.count; ++k) ids.push_back(tree_.prims[k]);
   } else {
     gather(node.left, ids);
-    gather(node.right, ids);
+    gather(node.left + 1, ids);
   }
 }
 

@@ -1,7 +1,6 @@
 // Which subtrees of a binary tree become the nodes and leaves of a wide one, and where they go in memory.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -11,6 +10,7 @@
 #include "raygrain/bvh.h"
 #include "raygrain/wide.h"
 
+#include "base/buffer.h"
 #include "trace/wide_tree.h"
 
 namespace raygrain {
@@ -52,30 +52,37 @@ class WidePlan {
   size_t leaves() const { return leaves_; }
   uint64_t node_bytes() const { return node_bytes_; }
   uint64_t leaf_bytes() const { return leaf_bytes_; }
-  const Bounds& bounds(const WideItem& item) const { return bounds_[item.root]; }
-  const Bounds& root_bounds() const { return bounds_[0]; }
+  const Bounds& bounds(const WideItem& item) const { return box(item.root); }
+  const Bounds& root_bounds() const { return tree_.nodes[0].bounds; }
   /// Appends the item's primitives.
   void gather(const WideItem& item, std::vector<uint32_t>& ids) const { gather(item.root, ids); }
 
  private:
-  /// A node of the binary tree with large leaves cut into halves; children come after their parents.
+  /// A node of the binary tree with large leaves cut into halves; children come after their parents, side by side.
   struct Binary {
-    uint32_t left = 0, right = 0;   // 0: a leaf
+    uint32_t left = 0;              // 0: a leaf
     uint32_t first = 0, count = 0;  // a leaf's prims; `count` of an inner node: all triangles below
-    uint32_t leaves = 1;            // below, or itself
+    uint8_t leaves = 1;             // below, or itself; no more than kMostWidth
     bool merged = false;            // an inner node whose triangles are best put into one leaf
   };
-  using Costs = std::array<float, kMostWidth + 1>;  // [n]: of the triangles in at most n places; [0] is not used
 
   void copy_binary();
   void halve_leaf(size_t index);
   void measure_nodes();
+  const Bounds& box(size_t i) const {
+    return i < tree_.nodes.size() ? tree_.nodes[i].bounds : halves_[i - tree_.nodes.size()];
+  }
+  /// [n]: the cost of the node's triangles in at most n places; n from 1 to the form's width.
+  float* costs(size_t i) { return costs_.elements().data() + i * form_.width; }
+  const float* costs(size_t i) const { return costs_.elements().data() + i * form_.width; }
   float node_cost(size_t i) const;
   float leaf_cost(size_t i) const;
   float split_cost(size_t i, size_t places, size_t left_places) const;
   void price(size_t i);
+  void price_inner(size_t i);
   void collect(uint32_t i, size_t places, std::vector<uint32_t>& roots) const;
   void collect_halves(uint32_t i, size_t places, std::vector<uint32_t>& roots) const;
+  void sort(std::vector<uint32_t>& roots) const;
   bool is_wide_leaf(uint32_t i) const { return binary_[i].left == 0 || binary_[i].merged; }
   void plan();
   void plan_children(uint32_t parent, const std::vector<uint32_t>& roots, std::vector<uint32_t>& pending);
@@ -85,9 +92,9 @@ class WidePlan {
   const WideOptions& options_;
   const WideForm& form_;
   std::vector<Binary> binary_;
-  std::vector<Bounds> bounds_;
+  std::vector<Bounds> halves_;  // of leaves; their boxes
   std::vector<float> measures_;
-  std::vector<Costs> costs_;
+  Buffer<float> costs_;  // `width` for each node, behind one that is not used
   std::vector<WideItem> items_;
   size_t nodes_ = 0, leaves_ = 0;
   uint64_t node_bytes_ = 0, leaf_bytes_ = 0;
