@@ -50,6 +50,11 @@ void become_nobody() {
   redirect(options.standard_error.empty() ? error_path : options.standard_error, STDERR_FILENO);
   if (options.closed_reader) redirect_to_nobody();
   if (!options.folder.empty() && ::chdir(options.folder.c_str()) != 0) ::_exit(kCannotStart);
+  // An instrumented program would write its counters under the limits that are meant for it, and tell of that.
+  if (options.file_size || options.memory || options.unprivileged) {
+    ::setenv("GCOV_PREFIX", "/dev/null", 1);
+    ::setenv("GCOV_ERROR_FILE", "/dev/null", 1);
+  }
   limit(RLIMIT_FSIZE, options.file_size);
   limit(RLIMIT_AS, options.memory);
   if (options.unprivileged) become_nobody();

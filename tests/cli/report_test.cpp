@@ -149,12 +149,12 @@ TEST_F(ReportCommand, LinksPagesOfTheViewer) {
 /// Labels or titles of the charts that hold a measured value of the recipe.
 std::set<std::string> charts_with(const nlohmann::json& report, const std::string& recipe) {
   std::set<std::string> charts;
-  for (const auto& section : report["sections"])
-    for (const auto& chart : section["charts"])
-      for (const auto& panel : chart["panels"])
-        for (const auto& point : panel["measured"])
-          if ((point["series"] == recipe || point["group"] == recipe) && point["y"].is_number())
-            charts.insert(chart["label"] == "" ? chart["title"] : chart["label"]);
+  for (const auto& section : report.at("sections"))
+    for (const auto& chart : section.at("charts"))
+      for (const auto& panel : chart.at("panels"))
+        for (const auto& point : panel.value("measured", nlohmann::json::array()))
+          if ((point.value("series", "") == recipe || point.value("group", "") == recipe) && point.at("y").is_number())
+            charts.insert(chart.at("label") == "" ? chart.at("title") : chart.at("label"));
   return charts;
 }
 
