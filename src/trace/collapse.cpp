@@ -107,7 +107,7 @@ class Collapse {
         place[3 * count] = b;
         place[6 * count] = c;
       }
-      out[9 * count + lane] = std::bit_cast<float>(ids[lane]);
+      out[9 * count + lane] = stored_id(ids[lane]);
     }
     return leaf_ref(offset, static_cast<uint32_t>(count), std::nextafter(size, kInf));  // whatever was rounded
   }

@@ -1,7 +1,6 @@
 // The memory of a wide tree in ray space, and rays prepared for it.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -50,10 +49,7 @@ struct FrameLeaf {
   float middle() const { return floats()[0]; }
   float half() const { return floats()[1]; }
   const float* field(size_t index) const { return floats() + 2 + index * count; }
-  uint32_t id(size_t lane) const { return std::bit_cast<uint32_t>(field(kId)[lane]) ^ kMask; }
-  /// Lanes that a leaf lacks read ids for numbers: as floats about 1, for arithmetic with denormal ones takes ages.
-  static float stored(uint32_t id) { return std::bit_cast<float>(id ^ kMask); }
-  static constexpr uint32_t kMask = 0x3f800000;
+  uint32_t id(size_t lane) const { return id_of(field(kId)[lane]); }
 
   static size_t size(size_t count) {
     const size_t bytes = (2 + kFields * count) * sizeof(float);

@@ -80,7 +80,7 @@ class FrameWriter {
       field(FrameLeaf::kQ, lane) = static_cast<float>(t.q);
       field(FrameLeaf::kR, lane) = static_cast<float>(t.r);
       field(FrameLeaf::kError, lane) = float_above(t.z_error * (1 + 0x1p-20));
-      field(FrameLeaf::kId, lane) = FrameLeaf::stored(ids_[lane]);
+      field(FrameLeaf::kId, lane) = stored_id(ids_[lane]);
       most_error = std::max(most_error, t.z_error);
     }
     const double lo = leaf.lo.z, hi = leaf.hi.z, middle = 0.5 * (lo + hi);

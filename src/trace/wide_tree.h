@@ -43,6 +43,16 @@ struct alignas(256) WideNode {
 };
 static_assert(sizeof(WideNode) == 256);
 
+/// Ids among the floats of a leaf. Lanes that a leaf lacks read them for numbers: as floats about 1, for arithmetic
+/// with denormal ones takes ages.
+inline constexpr uint32_t kIdMask = 0x3f800000;
+inline float stored_id(uint32_t id) {
+  return std::bit_cast<float>(id ^ kIdMask);
+}
+inline uint32_t id_of(float stored) {
+  return std::bit_cast<uint32_t>(stored) ^ kIdMask;
+}
+
 /// Up to eight triangles in the mesh's own coordinates: count floats for each corner and axis, then count ids. Kernels
 /// read eight floats wherever they are, so some bytes must follow (kLeafSlack).
 struct WideLeaf {
@@ -53,7 +63,7 @@ struct WideLeaf {
     return reinterpret_cast<const float*>(bytes) + (3 * c + axis) * count;
   }
   Vec3 vertex(size_t c, size_t lane) const { return {corner(c, 0)[lane], corner(c, 1)[lane], corner(c, 2)[lane]}; }
-  uint32_t id(size_t lane) const { return std::bit_cast<uint32_t>(corner(3, 0)[lane]); }
+  uint32_t id(size_t lane) const { return id_of(corner(3, 0)[lane]); }
 };
 inline constexpr size_t kTriangleBytes = 10 * sizeof(float);
 inline constexpr size_t kLeafSlack = 64;
