@@ -9,9 +9,27 @@ namespace raygrain {
 namespace {
 
 constexpr uint32_t kMostCellsAcross = 128;
+static_assert(kMostCellsAcross * kMostCellsAcross <= 0x10000);  // cells have numbers of 16 bits
 
 float code(const CoverageTile& tile, float s) {
   return (s - tile.lowest) * tile.per_depth + kFirstCode;
+}
+
+/// Nearest to the light first, then by slots, which are in the order of ids.
+void sort_by_depth(std::span<InCell> list) {
+  constexpr size_t kShort = 24;
+  if (list.size() > kShort) {
+    std::sort(list.begin(), list.end(), [](const InCell& a, const InCell& b) {
+      return a.highest != b.highest ? a.highest > b.highest : a.slot < b.slot;
+    });
+    return;
+  }
+  for (size_t i = 1; i < list.size(); ++i) {
+    const InCell one = list[i];
+    size_t at = i;
+    for (; at > 0 && list[at - 1].highest < one.highest; --at) list[at] = list[at - 1];
+    list[at] = one;
+  }
 }
 
 }  // namespace
@@ -34,10 +52,11 @@ void RowBuilder::build_tile(uint32_t tile_x, uint32_t tile_y, CoverageRow& row) 
   if (!list_entries(raster)) return;
   const size_t cells = size_t{tile.across} * tile.across;
   sort_entries(cells);
+  sheets_.enter(seen_);
   covers_.resize(cells);
   for (size_t i = 0; i < cells; ++i)
     covers_[i] = sheets_.cover(
-        seen_, list(i), raster.square(static_cast<uint32_t>(i) % tile.across, static_cast<uint32_t>(i) / tile.across));
+        list(i), raster.square(static_cast<uint32_t>(i) % tile.across, static_cast<uint32_t>(i) / tile.across));
   set_codes(tile);
   record_.assign(seen_.size(), kNoTriangle);
   for (size_t i = 0; i < cells; ++i) write_cell(tile, i, row);
@@ -46,33 +65,37 @@ void RowBuilder::build_tile(uint32_t tile_x, uint32_t tile_y, CoverageRow& row) 
 /// Which triangles each cell may meet, triangle by triangle. False where they are too many.
 bool RowBuilder::list_entries(const Raster& raster) {
   entries_of_tile_.clear();
-  for (uint32_t slot = 0; slot < seen_.size(); ++slot) {
-    if (members_.is_too_much(entries_)) return false;
-    const SeenTriangle& one = seen_[slot];
-    const WindowPlace place = place_of(one);
-    const CellRange columns = cells_of(place.x_lo, place.x_hi, raster.x, raster.width, raster.across);
-    const CellRange lines = cells_of(place.y_lo, place.y_hi, raster.y, raster.width, raster.across);
-    const size_t before = entries_of_tile_.size();
-    for (uint32_t y = lines.lo; y <= lines.hi; ++y)
-      for (uint32_t x = columns.lo; x <= columns.hi; ++x) {
-        const CellSquare cell = raster.square(x, y);
-        if (!one.may_touch(cell.x, cell.y, cell.half)) continue;
-        const double highest = one.highest(cell.x, cell.y, cell.half), lowest = one.lowest(cell.x, cell.y, cell.half);
-        entries_of_tile_.push_back(
-            {y * raster.across + x, {static_cast<float>(highest), static_cast<float>(lowest), slot}});
-      }
-    entries_ += entries_of_tile_.size() - before;
-  }
-  return true;
+  const uint64_t others = entries_;
+  uint32_t slot = 0;
+  while (slot < seen_.size() && !members_.is_too_much(others + entries_of_tile_.size())) list_cells(raster, slot++);
+  entries_ += entries_of_tile_.size();
+  return slot == seen_.size();
+}
+
+void RowBuilder::list_cells(const Raster& raster, uint32_t slot) {
+  const SeenTriangle& one = seen_[slot];
+  const WindowPlace place = place_of(one);
+  const CellRange columns = cells_of(place.x_lo, place.x_hi, raster.x, raster.width, raster.across);
+  const CellRange lines = cells_of(place.y_lo, place.y_hi, raster.y, raster.width, raster.across);
+  const SquareTests tests(one, raster.width / 2);
+  InCell entry;
+  entry.slot = slot;
+  for (uint32_t y = lines.lo; y <= lines.hi; ++y)
+    for (uint32_t x = columns.lo; x <= columns.hi; ++x) {
+      const CellSquare cell = raster.square(x, y);
+      if (!tests.meet(cell.x, cell.y, entry)) continue;
+      entry.cell = static_cast<uint16_t>(y * raster.across + x);
+      entries_of_tile_.push_back(entry);
+    }
 }
 
 /// Keeps the order within each cell.
 void RowBuilder::sort_entries(size_t cells) {
   begin_.assign(cells + 1, 0);
-  for (const Entry& entry : entries_of_tile_) ++begin_[entry.cell + 1];
+  for (const InCell& entry : entries_of_tile_) ++begin_[entry.cell + 1];
   for (size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
   sorted_.resize(entries_of_tile_.size());
-  for (const Entry& entry : entries_of_tile_) sorted_[begin_[entry.cell]++] = entry.one;
+  for (const InCell& entry : entries_of_tile_) sorted_[begin_[entry.cell]++] = entry;
   for (size_t i = begin_.size() - 1; i > 0; --i) begin_[i] = begin_[i - 1];
   begin_[0] = 0;
 }
@@ -100,7 +123,11 @@ void RowBuilder::set_codes(CoverageTile& tile) {
 }
 
 uint16_t RowBuilder::code_above(const CoverageTile& tile, float s) const {
-  return static_cast<uint16_t>(std::clamp(std::ceil(code(tile, s + slack(s))) + 2, 1.0f, 65535.0f));
+  const float exact = code(tile, s + slack(s));
+  if (!(exact > -1)) return 1;
+  if (exact > 65533) return 65535;
+  const auto whole = static_cast<int32_t>(exact);  // rounded to zero
+  return static_cast<uint16_t>(whole + 2 + (static_cast<float>(whole) < exact ? 1 : 0));
 }
 
 uint16_t RowBuilder::code_below(const CoverageTile& tile, float s) const {
@@ -123,9 +150,7 @@ void RowBuilder::write_cell(const CoverageTile& tile, size_t number, CoverageRow
     cell.cover = code_below(tile, cover);
     meets = drop_hidden(meets, cover);
   }
-  std::sort(meets.begin(), meets.end(), [&](const InCell& a, const InCell& b) {
-    return a.highest != b.highest ? a.highest > b.highest : seen_[a.slot].record.id < seen_[b.slot].record.id;
-  });
+  sort_by_depth(meets);
   if (!meets.empty()) cell.far = code_above(tile, meets.front().highest);
   for (const InCell& one : meets) {
     uint32_t& record = record_[one.slot];

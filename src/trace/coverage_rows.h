@@ -34,10 +34,6 @@ class RowBuilder {
   void build(uint32_t y, CoverageRow& row);
 
  private:
-  struct Entry {
-    uint32_t cell;
-    InCell one;
-  };
   /// Where the tile at hand has its cells.
   struct Raster {
     double x, y, width;
@@ -50,6 +46,7 @@ class RowBuilder {
 
   void build_tile(uint32_t tile_x, uint32_t tile_y, CoverageRow& row);
   bool list_entries(const Raster& raster);
+  void list_cells(const Raster& raster, uint32_t slot);
   void sort_entries(size_t cells);
   std::span<InCell> list(size_t cell) {
     return std::span(sorted_).subspan(begin_[cell], begin_[cell + 1] - begin_[cell]);
@@ -68,8 +65,7 @@ class RowBuilder {
   // Of the tile at hand.
   SheetFinder sheets_;
   std::vector<SeenTriangle> seen_;
-  std::vector<Entry> entries_of_tile_;
-  std::vector<InCell> sorted_;            // by cell
+  std::vector<InCell> entries_of_tile_, sorted_;  // by triangle; by cell
   std::vector<uint32_t> begin_, record_;  // of each cell in `sorted_`; of each seen triangle in its row's records
   std::vector<float> covers_;
 };

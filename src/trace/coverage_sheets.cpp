@@ -10,42 +10,63 @@ constexpr float kNone = -std::numeric_limits<float>::infinity();
 
 }  // namespace
 
+void SheetFinder::enter(std::span<const SeenTriangle> tile) {
+  tile_ = tile;
+  ++tile_number_;
+  for (uint32_t slot = 0; slot < tile.size(); ++slot) places_[tile[slot].record.id] = {tile_number_, slot};
+  beside_.resize(tile.size());
+  for (size_t slot = 0; slot < tile.size(); ++slot)
+    for (size_t e = 0; e < 3; ++e) {
+      const uint32_t other = neighbours_[tile[slot].record.id][e];
+      const bool is_here = other != kNoNeighbour && places_[other].tile == tile_number_;
+      beside_[slot][e] = is_here ? places_[other].slot : kNoNeighbour;
+    }
+  if (parts_.size() < tile.size()) parts_.resize(tile.size());
+}
+
 uint32_t SheetFinder::root(uint32_t i) {
   while (parts_[i].parent != i) i = parts_[i].parent = parts_[parts_[i].parent].parent;
   return i;
 }
 
-/// Unites triangles across the edges that the cell may meet.
-void SheetFinder::join_neighbours(std::span<const SeenTriangle> tile, std::span<const InCell> list,
-                                  const CellSquare& cell) {
+/// Begins with a part for each. Parts with triangles that do not lie above `least` throughout the cell cover no more
+/// than that, whatever they are. False where there are no others.
+bool SheetFinder::begin_parts(std::span<const InCell> list, float least) {
   ++cell_number_;
-  for (uint32_t i = 0; i < list.size(); ++i) {
-    const uint32_t id = tile[list[i].slot].record.id;
-    slot_of_[id] = i;
-    seen_in_[id] = cell_number_;
-    parts_[i] = {i, false, false, list[i].lowest};
+  bool any = false;
+  for (const InCell& one : list) {
+    const bool matters = one.lowest > least;
+    any |= matters;
+    parts_[one.slot] = {cell_number_, one.slot, !matters, false, one.lowest};
   }
-  for (uint32_t i = 0; i < list.size(); ++i) {
-    const SeenTriangle& seen = tile[list[i].slot];
+  return any;
+}
+
+/// Unites triangles across the edges that the cell may meet.
+void SheetFinder::join_neighbours(std::span<const InCell> list) {
+  for (const InCell& one : list)
     for (size_t e = 0; e < 3; ++e) {
-      if (!seen.edge_may_touch(e, cell.x, cell.y, cell.half)) continue;
-      const uint32_t other = neighbours_[seen.record.id][e];
-      if (other == kNoNeighbour || seen_in_[other] != cell_number_)
-        parts_[i].is_open = true;
+      if ((one.edges >> e & 1) == 0) continue;
+      const uint32_t other = beside_[one.slot][e];
+      if (other == kNoNeighbour || parts_[other].cell != cell_number_)
+        parts_[one.slot].is_open = true;
       else
-        parts_[root(i)].parent = root(slot_of_[other]);
+        parts_[root(one.slot)].parent = root(other);
     }
+  for (const InCell& one : list) {
+    Part& part = parts_[root(one.slot)];
+    part.is_open |= parts_[one.slot].is_open;
+    part.lowest = std::min(part.lowest, one.lowest);
   }
 }
 
 /// How often each part covers one point of the cell, which stands for all of them.
-void SheetFinder::find_parity(std::span<const SeenTriangle> tile, std::span<const InCell> list,
-                              const CellSquare& cell) {
+void SheetFinder::find_parity(std::span<const InCell> list, const CellSquare& cell) {
   const double x = cell.x + 0.31 * cell.half, y = cell.y + 0.17 * cell.half;  // off the lines of regular models
-  for (uint32_t i = 0; i < list.size(); ++i) {
-    Part& part = parts_[root(i)];
+  for (const InCell& one : list) {
+    Part& part = parts_[root(one.slot)];
     if (part.is_open) continue;
-    const SeenTriangle& seen = tile[list[i].slot];
+    const SeenTriangle& seen = tile_[one.slot];
     if (seen.fills(x, y, 0))
       part.is_odd = !part.is_odd;
     else if (seen.may_touch(x, y, 0))
@@ -53,21 +74,16 @@ void SheetFinder::find_parity(std::span<const SeenTriangle> tile, std::span<cons
   }
 }
 
-float SheetFinder::cover(std::span<const SeenTriangle> tile, std::span<const InCell> list, const CellSquare& cell) {
+float SheetFinder::cover(std::span<const InCell> list, const CellSquare& cell) {
   float best = kNone;
   for (const InCell& one : list)
-    if (one.lowest > best && tile[one.slot].fills(cell.x, cell.y, cell.half)) best = one.lowest;
+    if (one.is_filled) best = std::max(best, one.lowest);
   if (list.size() < 2 || list.size() > kMostTriangles) return best;
-  parts_.resize(list.size());
-  join_neighbours(tile, list, cell);
-  for (uint32_t i = 0; i < list.size(); ++i) {
-    Part& part = parts_[root(i)];
-    part.is_open |= parts_[i].is_open;
-    part.lowest = std::min(part.lowest, list[i].lowest);
-  }
-  find_parity(tile, list, cell);
-  for (uint32_t i = 0; i < list.size(); ++i)
-    if (const Part& part = parts_[i]; part.parent == i && !part.is_open && part.is_odd)
+  if (!begin_parts(list, best)) return best;
+  join_neighbours(list);
+  find_parity(list, cell);
+  for (const InCell& one : list)
+    if (const Part& part = parts_[one.slot]; part.parent == one.slot && !part.is_open && part.is_odd)
       best = std::max(best, part.lowest);
   return best;
 }

@@ -1,0 +1,74 @@
+// One triangle against the cells that it may meet.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "trace/coverage_triangle.h"
+
+namespace raygrain {
+
+/// The middle of a cell and half its width.
+struct CellSquare {
+  double x, y, half;
+};
+
+/// A triangle that a cell may meet.
+struct InCell {
+  float highest, lowest;  // depths there, widened by errors
+  uint32_t slot;          // of the tile's triangles
+  uint16_t cell;          // of the tile's cells
+  uint8_t edges;          // those that a column of the cell may come near: a bit each
+  bool is_filled;         // every column of the cell meets the triangle, strictly
+};
+
+/// Tests against squares of one size: what does not depend on their places is known beforehand.
+class SquareTests {
+ public:
+  SquareTests(const SeenTriangle& seen, double half) : seen_(seen), room_(half + 2 * seen.margin) {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    reach_.fill(kInfinity);
+    if (seen.is_clear) {
+      lines_ = seen.edges;
+      for (size_t i = 0; i < 3; ++i)
+        reach_[i] = (std::abs(lines_[i][0]) + std::abs(lines_[i][1])) * (half + seen.margin) + seen.margin;
+    }
+    depth_reach_ = kInfinity;
+    if (!seen.has_plane) return;
+    slope_x_ = seen.slope_x, slope_y_ = seen.slope_y, offset_ = seen.offset;
+    depth_reach_ = (std::abs(slope_x_) + std::abs(slope_y_)) * (half + seen.margin) + seen.plane_error;
+  }
+
+  /// False where no column within the square about (x, y), or within margins of that, can meet the triangle, by its
+  /// edges. Otherwise sets all of `one` but its numbers.
+  bool meet(double x, double y, InCell& one) const {
+    const std::array<double, 3> at = {lines_[0][0] * x + lines_[0][1] * y + lines_[0][2],
+                                      lines_[1][0] * x + lines_[1][1] * y + lines_[1][2],
+                                      lines_[2][0] * x + lines_[2][1] * y + lines_[2][2]};
+    if (at[0] < -reach_[0] || at[1] < -reach_[1] || at[2] < -reach_[2]) return false;
+    one.is_filled = at[0] > reach_[0] && at[1] > reach_[1] && at[2] > reach_[2];
+    one.edges = 0;
+    for (size_t i = 0; i < 3; ++i)
+      if (at[i] <= reach_[i] && is_beside(i, x, y)) one.edges = static_cast<uint8_t>(one.edges | 1u << i);
+    const double s = slope_x_ * x + slope_y_ * y + offset_;
+    one.highest = static_cast<float>(std::min(seen_.s_hi, s + depth_reach_));
+    one.lowest = static_cast<float>(std::max(seen_.s_lo, s - depth_reach_));
+    return true;
+  }
+
+ private:
+  bool is_beside(size_t edge, double x, double y) const {
+    const auto& box = seen_.edge_boxes[edge];
+    return !(x + room_ < box[0] || x - room_ > box[1] || y + room_ < box[2] || y - room_ > box[3]);
+  }
+
+  const SeenTriangle& seen_;
+  double room_;
+  std::array<std::array<double, 3>, 3> lines_ = {};  // zero, within reach, where edges tell nothing
+  std::array<double, 3> reach_;
+  double slope_x_ = 0, slope_y_ = 0, offset_ = 0, depth_reach_;
+};
+
+}  // namespace raygrain
