@@ -8,9 +8,6 @@ namespace raygrain {
 
 namespace {
 
-constexpr uint32_t kMostCellsAcross = 128;
-static_assert(kMostCellsAcross * kMostCellsAcross <= 0x10000);  // cells have numbers of 16 bits
-
 float code(const CoverageTile& tile, float s) {
   return (s - tile.lowest) * tile.per_depth + kFirstCode;
 }
@@ -80,13 +77,16 @@ void RowBuilder::list_cells(const Raster& raster, uint32_t slot) {
   const SquareTests tests(one, raster.width / 2);
   InCell entry;
   entry.slot = slot;
-  for (uint32_t y = lines.lo; y <= lines.hi; ++y)
+  for (uint32_t x = columns.lo; x <= columns.hi; ++x) near_x_[x] = tests.edges_near_x(raster.square(x, 0).x);
+  for (uint32_t y = lines.lo; y <= lines.hi; ++y) {
+    const unsigned near_y = tests.edges_near_y(raster.square(0, y).y);
     for (uint32_t x = columns.lo; x <= columns.hi; ++x) {
       const CellSquare cell = raster.square(x, y);
-      if (!tests.meet(cell.x, cell.y, entry)) continue;
+      if (!tests.meet(cell.x, cell.y, near_x_[x] & near_y, entry)) continue;
       entry.cell = static_cast<uint16_t>(y * raster.across + x);
       entries_of_tile_.push_back(entry);
     }
+  }
 }
 
 /// Keeps the order within each cell.

@@ -1,6 +1,7 @@
 // The cells of one row of tiles.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <span>
@@ -34,6 +35,9 @@ class RowBuilder {
   void build(uint32_t y, CoverageRow& row);
 
  private:
+  static constexpr uint32_t kMostCellsAcross = 128;
+  static_assert(kMostCellsAcross * kMostCellsAcross <= 0x10000);  // cells have numbers of 16 bits
+
   /// Where the tile at hand has its cells.
   struct Raster {
     double x, y, width;
@@ -68,6 +72,7 @@ class RowBuilder {
   std::vector<InCell> entries_of_tile_, sorted_;  // by triangle; by cell
   std::vector<uint32_t> begin_, record_;  // of each cell in `sorted_`; of each seen triangle in its row's records
   std::vector<float> covers_;
+  std::array<unsigned, kMostCellsAcross> near_x_;  // of the triangle at hand: its edges near each column
 };
 
 }  // namespace raygrain

@@ -1,6 +1,7 @@
 #include "trace/coverage_sheets.h"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 
 namespace raygrain {
@@ -45,9 +46,8 @@ bool SheetFinder::begin_parts(std::span<const InCell> list, float least) {
 /// Unites triangles across the edges that the cell may meet.
 void SheetFinder::join_neighbours(std::span<const InCell> list) {
   for (const InCell& one : list)
-    for (size_t e = 0; e < 3; ++e) {
-      if ((one.edges >> e & 1) == 0) continue;
-      const uint32_t other = beside_[one.slot][e];
+    for (unsigned edges = one.edges; edges != 0; edges &= edges - 1) {
+      const uint32_t other = beside_[one.slot][static_cast<size_t>(std::countr_zero(edges))];
       if (other == kNoNeighbour || parts_[other].cell != cell_number_)
         parts_[one.slot].is_open = true;
       else

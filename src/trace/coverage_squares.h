@@ -41,17 +41,20 @@ class SquareTests {
     depth_reach_ = (std::abs(slope_x_) + std::abs(slope_y_)) * (half + seen.margin) + seen.plane_error;
   }
 
+  /// The edges, a bit each, whose boxes come near columns of these x, or of these y.
+  unsigned edges_near_x(double x) const { return edges_near<0>(x); }
+  unsigned edges_near_y(double y) const { return edges_near<2>(y); }
+
   /// False where no column within the square about (x, y), or within margins of that, can meet the triangle, by its
-  /// edges. Otherwise sets all of `one` but its numbers.
-  bool meet(double x, double y, InCell& one) const {
-    const std::array<double, 3> at = {lines_[0][0] * x + lines_[0][1] * y + lines_[0][2],
-                                      lines_[1][0] * x + lines_[1][1] * y + lines_[1][2],
-                                      lines_[2][0] * x + lines_[2][1] * y + lines_[2][2]};
-    if (at[0] < -reach_[0] || at[1] < -reach_[1] || at[2] < -reach_[2]) return false;
-    one.is_filled = at[0] > reach_[0] && at[1] > reach_[1] && at[2] > reach_[2];
-    one.edges = 0;
-    for (size_t i = 0; i < 3; ++i)
-      if (at[i] <= reach_[i] && is_beside(i, x, y)) one.edges = static_cast<uint8_t>(one.edges | 1u << i);
+  /// edges. Otherwise sets all of `one` but its numbers. `edges_near` are those near both x and y.
+  bool meet(double x, double y, unsigned edges_near, InCell& one) const {
+    const double a = lines_[0][0] * x + lines_[0][1] * y + lines_[0][2],
+                 b = lines_[1][0] * x + lines_[1][1] * y + lines_[1][2],
+                 c = lines_[2][0] * x + lines_[2][1] * y + lines_[2][2];
+    if (bit(a < -reach_[0]) | bit(b < -reach_[1]) | bit(c < -reach_[2])) return false;
+    const unsigned inside = bit(a > reach_[0]) | bit(b > reach_[1]) << 1 | bit(c > reach_[2]) << 2;
+    one.is_filled = inside == 7;
+    one.edges = static_cast<uint8_t>(edges_near & ~inside);
     const double s = slope_x_ * x + slope_y_ * y + offset_;
     one.highest = static_cast<float>(std::min(seen_.s_hi, s + depth_reach_));
     one.lowest = static_cast<float>(std::max(seen_.s_lo, s - depth_reach_));
@@ -59,9 +62,16 @@ class SquareTests {
   }
 
  private:
-  bool is_beside(size_t edge, double x, double y) const {
-    const auto& box = seen_.edge_boxes[edge];
-    return !(x + room_ < box[0] || x - room_ > box[1] || y + room_ < box[2] || y - room_ > box[3]);
+  static unsigned bit(bool value) { return value; }
+
+  template <size_t kLo>
+  unsigned edges_near(double at) const {
+    unsigned edges = 0;
+    for (size_t i = 0; i < 3; ++i) {
+      const auto& box = seen_.edge_boxes[i];
+      edges |= (bit(!(at + room_ < box[kLo])) & bit(!(at - room_ > box[kLo + 1]))) << i;
+    }
+    return edges;
   }
 
   const SeenTriangle& seen_;
