@@ -78,11 +78,19 @@ void RowBuilder::list_cells(const Raster& raster, uint32_t slot) {
   InCell entry;
   entry.slot = slot;
   for (uint32_t x = columns.lo; x <= columns.hi; ++x) near_x_[x] = tests.edges_near_x(raster.square(x, 0).x);
+  uint32_t first = columns.lo;  // that is met: hardly another one in the next line
   for (uint32_t y = lines.lo; y <= lines.hi; ++y) {
-    const unsigned near_y = tests.edges_near_y(raster.square(0, y).y);
-    for (uint32_t x = columns.lo; x <= columns.hi; ++x) {
-      const CellSquare cell = raster.square(x, y);
-      if (!tests.meet(cell.x, cell.y, near_x_[x] & near_y, entry)) continue;
+    const double cell_y = raster.square(0, y).y;
+    const unsigned near_y = tests.edges_near_y(cell_y);
+    while (first > columns.lo && tests.goes_on_at(raster.square(first - 1, y).x, cell_y)) --first;
+    bool is_met = false;
+    for (uint32_t x = first; x <= columns.hi; ++x) {
+      if (!tests.meet(raster.square(x, y).x, cell_y, near_x_[x] & near_y, entry)) {
+        if (is_met) break;
+        continue;
+      }
+      if (!is_met) first = x;
+      is_met = true;
       entry.cell = static_cast<uint16_t>(y * raster.across + x);
       entries_of_tile_.push_back(entry);
     }

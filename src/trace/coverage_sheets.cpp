@@ -2,12 +2,28 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 namespace raygrain {
 namespace {
 
 constexpr float kNone = -std::numeric_limits<float>::infinity();
+
+enum class Side { kOut, kIn, kUnknown };
+
+/// Does a column meet the triangle?
+Side side_of(const SeenTriangle& seen, double x, double y) {
+  if (!seen.is_clear) return Side::kUnknown;
+  bool is_sure = true;
+  for (const auto& edge : seen.edges) {
+    const double reach = (std::abs(edge[0]) + std::abs(edge[1])) * seen.margin + seen.margin;
+    const double at = edge[0] * x + edge[1] * y + edge[2];
+    if (at < -reach) return Side::kOut;
+    is_sure &= at > reach;
+  }
+  return is_sure ? Side::kIn : Side::kUnknown;
+}
 
 }  // namespace
 
@@ -66,11 +82,9 @@ void SheetFinder::find_parity(std::span<const InCell> list, const CellSquare& ce
   for (const InCell& one : list) {
     Part& part = parts_[root(one.slot)];
     if (part.is_open) continue;
-    const SeenTriangle& seen = tile_[one.slot];
-    if (seen.fills(x, y, 0))
-      part.is_odd = !part.is_odd;
-    else if (seen.may_touch(x, y, 0))
-      part.is_open = true;
+    const Side side = side_of(tile_[one.slot], x, y);
+    part.is_odd ^= side == Side::kIn;
+    part.is_open |= side == Side::kUnknown;
   }
 }
 

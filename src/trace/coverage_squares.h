@@ -45,12 +45,19 @@ class SquareTests {
   unsigned edges_near_x(double x) const { return edges_near<0>(x); }
   unsigned edges_near_y(double y) const { return edges_near<2>(y); }
 
+  /// False where an edge tells that neither the square about (x, y) nor those at lesser x meet the triangle: rounding
+  /// keeps the order of values along a line of cells.
+  bool goes_on_at(double x, double y) const {
+    return !(bit(lines_[0][0] > 0) & bit(at(0, x, y) < -reach_[0])) &&
+           !(bit(lines_[1][0] > 0) & bit(at(1, x, y) < -reach_[1])) &&
+           !(bit(lines_[2][0] > 0) & bit(at(2, x, y) < -reach_[2]));
+  }
+
   /// False where no column within the square about (x, y), or within margins of that, can meet the triangle, by its
-  /// edges. Otherwise sets all of `one` but its numbers. `edges_near` are those near both x and y.
+  /// edges; that is so for all squares of a line but for some in a row. Otherwise sets all of `one` but its numbers.
+  /// `edges_near` are those near both x and y.
   bool meet(double x, double y, unsigned edges_near, InCell& one) const {
-    const double a = lines_[0][0] * x + lines_[0][1] * y + lines_[0][2],
-                 b = lines_[1][0] * x + lines_[1][1] * y + lines_[1][2],
-                 c = lines_[2][0] * x + lines_[2][1] * y + lines_[2][2];
+    const double a = at(0, x, y), b = at(1, x, y), c = at(2, x, y);
     if (bit(a < -reach_[0]) | bit(b < -reach_[1]) | bit(c < -reach_[2])) return false;
     const unsigned inside = bit(a > reach_[0]) | bit(b > reach_[1]) << 1 | bit(c > reach_[2]) << 2;
     one.is_filled = inside == 7;
@@ -62,6 +69,10 @@ class SquareTests {
   }
 
  private:
+  double at(size_t edge, double x, double y) const {
+    return lines_[edge][0] * x + lines_[edge][1] * y + lines_[edge][2];
+  }
+
   static unsigned bit(bool value) { return value; }
 
   template <size_t kLo>

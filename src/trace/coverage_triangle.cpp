@@ -237,13 +237,4 @@ bool SeenTriangle::may_touch(double x, double y, double half) const {
   return true;
 }
 
-bool SeenTriangle::fills(double x, double y, double half) const {
-  if (!is_clear) return false;
-  for (const auto& edge : edges) {
-    const double reach = (std::abs(edge[0]) + std::abs(edge[1])) * (half + margin) + margin;
-    if (!(edge[0] * x + edge[1] * y + edge[2] > reach)) return false;
-  }
-  return true;
-}
-
 }  // namespace raygrain

@@ -23,8 +23,6 @@ struct SeenTriangle {
 
   /// May a column within `half` of (x, y), in both coordinates, or within margins of that, meet it? By its edges.
   bool may_touch(double x, double y, double half) const;
-  /// Does every such column meet it, strictly?
-  bool fills(double x, double y, double half) const;
 };
 
 enum class Seen {
