@@ -59,21 +59,29 @@ bool SheetFinder::begin_parts(std::span<const InCell> list, float least) {
   return any;
 }
 
-/// Unites triangles across the edges that the cell may meet.
-void SheetFinder::join_neighbours(std::span<const InCell> list) {
-  for (const InCell& one : list)
-    for (unsigned edges = one.edges; edges != 0; edges &= edges - 1) {
-      const uint32_t other = beside_[one.slot][static_cast<size_t>(std::countr_zero(edges))];
-      if (other == kNoNeighbour || parts_[other].cell != cell_number_)
-        parts_[one.slot].is_open = true;
-      else
-        parts_[root(one.slot)].parent = root(other);
-    }
+/// Unites triangles across the edges that the cell may meet, but for those that are known to be open. False where all
+/// are.
+bool SheetFinder::join_neighbours(std::span<const InCell> list) {
   for (const InCell& one : list) {
+    Part& part = parts_[one.slot];
+    for (unsigned edges = one.edges; edges != 0; edges &= edges - 1) {
+      const uint32_t number = beside_[one.slot][static_cast<size_t>(std::countr_zero(edges))];
+      if (number == kNoNeighbour || parts_[number].cell != cell_number_)
+        part.is_open = true;
+      else if (Part& other = parts_[number]; part.is_open || other.is_open)
+        part.is_open = other.is_open = true;
+      else
+        parts_[root(one.slot)].parent = root(number);
+    }
+  }
+  bool any = false;
+  for (const InCell& one : list) {
+    any |= !parts_[one.slot].is_open;
     Part& part = parts_[root(one.slot)];
     part.is_open |= parts_[one.slot].is_open;
     part.lowest = std::min(part.lowest, one.lowest);
   }
+  return any;
 }
 
 /// How often each part covers one point of the cell, which stands for all of them.
@@ -94,7 +102,7 @@ float SheetFinder::cover(std::span<const InCell> list, const CellSquare& cell) {
     if (one.is_filled) best = std::max(best, one.lowest);
   if (list.size() < 2 || list.size() > kMostTriangles) return best;
   if (!begin_parts(list, best)) return best;
-  join_neighbours(list);
+  if (!join_neighbours(list)) return best;
   find_parity(list, cell);
   for (const InCell& one : list)
     if (const Part& part = parts_[one.slot]; part.parent == one.slot && !part.is_open && part.is_odd)

@@ -39,7 +39,7 @@ class SheetFinder {
 
   uint32_t root(uint32_t i);
   bool begin_parts(std::span<const InCell> list, float least);
-  void join_neighbours(std::span<const InCell> list);
+  bool join_neighbours(std::span<const InCell> list);
   void find_parity(std::span<const InCell> list, const CellSquare& cell);
 
   std::span<const std::array<uint32_t, 3>> neighbours_;
