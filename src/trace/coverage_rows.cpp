@@ -38,35 +38,38 @@ void RowBuilder::build(uint32_t y, CoverageRow& row) {
 void RowBuilder::build_tile(uint32_t tile_x, uint32_t tile_y, CoverageRow& row) {
   const size_t number = size_t{tile_y} * grid_.tiles_x + tile_x;
   const std::span<const uint32_t> ids = members_.of(number);
-  seen_.resize(ids.size());
-  for (size_t i = 0; i < ids.size(); ++i) look_at(grid_, members_.near_z, ids[i], seen_[i]);
-
   CoverageTile& tile = grid_.tiles[number];
-  const double wanted = std::sqrt(density_.cells_per_triangle * static_cast<double>(seen_.size()));
+  const double wanted = std::sqrt(density_.cells_per_triangle * static_cast<double>(ids.size()));
   tile.across = static_cast<uint32_t>(std::clamp(std::ceil(wanted), 1.0, static_cast<double>(kMostCellsAcross)));
   const Raster raster{grid_.x_lo + tile_x * members_.edge, grid_.y_lo + tile_y * members_.edge,
                       members_.edge / tile.across, tile.across};
-  if (!list_entries(raster)) return;
+  if (!list_entries(raster, ids)) return;
   const size_t cells = size_t{tile.across} * tile.across;
   sort_entries(cells);
-  sheets_.enter(seen_);
+  sheets_.enter(ids, seen_);
   covers_.resize(cells);
-  for (size_t i = 0; i < cells; ++i)
+  for (size_t i = 0; i < cells; ++i) {
     covers_[i] = sheets_.cover(
         list(i), raster.square(static_cast<uint32_t>(i) % tile.across, static_cast<uint32_t>(i) / tile.across));
+    drop_hidden(i);
+  }
   set_codes(tile);
-  record_.assign(seen_.size(), kNoTriangle);
+  record_.assign(ids.size(), kNoTriangle);
   for (size_t i = 0; i < cells; ++i) write_cell(tile, i, row);
 }
 
 /// Which triangles each cell may meet, triangle by triangle. False where they are too many.
-bool RowBuilder::list_entries(const Raster& raster) {
+bool RowBuilder::list_entries(const Raster& raster, std::span<const uint32_t> ids) {
+  seen_.resize(std::max(seen_.size(), ids.size()));
   entries_of_tile_.clear();
   const uint64_t others = entries_;
   uint32_t slot = 0;
-  while (slot < seen_.size() && !members_.is_too_much(others + entries_of_tile_.size())) list_cells(raster, slot++);
+  for (; slot < ids.size() && !members_.is_too_much(others + entries_of_tile_.size()); ++slot) {
+    look_at(grid_, members_.near_z, ids[slot], seen_[slot]);
+    list_cells(raster, slot);
+  }
   entries_ += entries_of_tile_.size();
-  return slot == seen_.size();
+  return slot == ids.size();
 }
 
 void RowBuilder::list_cells(const Raster& raster, uint32_t slot) {
@@ -102,10 +105,9 @@ void RowBuilder::sort_entries(size_t cells) {
   begin_.assign(cells + 1, 0);
   for (const InCell& entry : entries_of_tile_) ++begin_[entry.cell + 1];
   for (size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-  sorted_.resize(entries_of_tile_.size());
-  for (const InCell& entry : entries_of_tile_) sorted_[begin_[entry.cell]++] = entry;
-  for (size_t i = begin_.size() - 1; i > 0; --i) begin_[i] = begin_[i - 1];
-  begin_[0] = 0;
+  end_.assign(begin_.begin(), begin_.end() - 1);
+  sorted_.resize(std::max(sorted_.size(), entries_of_tile_.size()));
+  for (const InCell& entry : entries_of_tile_) sorted_[end_[entry.cell]++] = entry;
 }
 
 /// Room for the errors of depths of about this size, and of their codes.
@@ -143,21 +145,23 @@ uint16_t RowBuilder::code_below(const CoverageTile& tile, float s) const {
 }
 
 /// What lies wholly behind the cover, with room for ties, is nobody's first hit.
-std::span<InCell> RowBuilder::drop_hidden(std::span<InCell> list, float cover) const {
+void RowBuilder::drop_hidden(size_t cell) {
+  const float cover = covers_[cell];
+  if (!(cover > -kInf)) return;
   const float behind = cover - 4 * slack(cover) - static_cast<float>(grid_.errors.depth * 8);
-  const auto end = std::remove_if(list.begin(), list.end(), [&](const InCell& one) { return one.highest < behind; });
-  return list.first(static_cast<size_t>(end - list.begin()));
+  uint32_t end = begin_[cell];
+  for (const InCell& one : list(cell)) {
+    sorted_[end] = one;
+    end += one.highest < behind ? 0 : 1;
+  }
+  end_[cell] = end;
 }
 
 void RowBuilder::write_cell(const CoverageTile& tile, size_t number, CoverageRow& row) {
-  const float cover = covers_[number];
-  std::span<InCell> meets = list(number);
+  const std::span<InCell> meets = list(number);
   CoverageCell cell;
   cell.first = static_cast<uint32_t>(row.references.size());
-  if (cover > -kInf) {
-    cell.cover = code_below(tile, cover);
-    meets = drop_hidden(meets, cover);
-  }
+  if (covers_[number] > -kInf) cell.cover = code_below(tile, covers_[number]);
   sort_by_depth(meets);
   if (!meets.empty()) cell.far = code_above(tile, meets.front().highest);
   for (const InCell& one : meets) {

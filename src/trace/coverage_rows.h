@@ -49,17 +49,15 @@ class RowBuilder {
   };
 
   void build_tile(uint32_t tile_x, uint32_t tile_y, CoverageRow& row);
-  bool list_entries(const Raster& raster);
+  bool list_entries(const Raster& raster, std::span<const uint32_t> ids);
   void list_cells(const Raster& raster, uint32_t slot);
   void sort_entries(size_t cells);
-  std::span<InCell> list(size_t cell) {
-    return std::span(sorted_).subspan(begin_[cell], begin_[cell + 1] - begin_[cell]);
-  }
+  std::span<InCell> list(size_t cell) { return std::span(sorted_).subspan(begin_[cell], end_[cell] - begin_[cell]); }
   float slack(float s) const;
   void set_codes(CoverageTile& tile);
   uint16_t code_above(const CoverageTile& tile, float s) const;
   uint16_t code_below(const CoverageTile& tile, float s) const;
-  std::span<InCell> drop_hidden(std::span<InCell> list, float cover) const;
+  void drop_hidden(size_t cell);
   void write_cell(const CoverageTile& tile, size_t number, CoverageRow& row);
 
   CoverageGrid& grid_;
@@ -70,7 +68,8 @@ class RowBuilder {
   SheetFinder sheets_;
   std::vector<SeenTriangle> seen_;
   std::vector<InCell> entries_of_tile_, sorted_;  // by triangle; by cell
-  std::vector<uint32_t> begin_, record_;  // of each cell in `sorted_`; of each seen triangle in its row's records
+  std::vector<uint32_t> begin_, end_;             // of each cell in `sorted_`
+  std::vector<uint32_t> record_;                  // of each seen triangle in its row's records
   std::vector<float> covers_;
   std::array<unsigned, kMostCellsAcross> near_x_;  // of the triangle at hand: its edges near each column
 };

@@ -27,18 +27,17 @@ Side side_of(const SeenTriangle& seen, double x, double y) {
 
 }  // namespace
 
-void SheetFinder::enter(std::span<const SeenTriangle> tile) {
+void SheetFinder::enter(std::span<const uint32_t> ids, std::span<const SeenTriangle> tile) {
   tile_ = tile;
   ++tile_number_;
-  for (uint32_t slot = 0; slot < tile.size(); ++slot) places_[tile[slot].record.id] = {tile_number_, slot};
-  beside_.resize(tile.size());
-  for (size_t slot = 0; slot < tile.size(); ++slot)
+  for (uint32_t slot = 0; slot < ids.size(); ++slot) places_[ids[slot]] = {tile_number_, slot};
+  if (parts_.size() < ids.size()) parts_.resize(ids.size()), beside_.resize(ids.size());
+  for (size_t slot = 0; slot < ids.size(); ++slot)
     for (size_t e = 0; e < 3; ++e) {
-      const uint32_t other = neighbours_[tile[slot].record.id][e];
+      const uint32_t other = neighbours_[ids[slot]][e];
       const bool is_here = other != kNoNeighbour && places_[other].tile == tile_number_;
       beside_[slot][e] = is_here ? places_[other].slot : kNoNeighbour;
     }
-  if (parts_.size() < tile.size()) parts_.resize(tile.size());
 }
 
 uint32_t SheetFinder::root(uint32_t i) {

@@ -16,7 +16,7 @@ class SheetFinder {
   explicit SheetFinder(const MeshNeighbours& neighbours) : neighbours_(neighbours), places_(neighbours.size()) {}
 
   /// Tells of which triangles the cells to come are.
-  void enter(std::span<const SeenTriangle> tile);
+  void enter(std::span<const uint32_t> ids, std::span<const SeenTriangle> tile);
   /// The greatest depth up to which the cell is covered: -infinity for none. `list` holds all triangles that the cell
   /// may meet.
   float cover(std::span<const InCell> list, const CellSquare& cell);
