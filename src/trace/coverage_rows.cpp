@@ -32,6 +32,8 @@ void sort_by_depth(std::span<InCell> list) {
 }  // namespace
 
 void RowBuilder::build(uint32_t y, CoverageRow& row) {
+  const size_t tile = size_t{y} * grid_.tiles_x;
+  row.records.reserve(members_.begin[tile + grid_.tiles_x] - members_.begin[tile]);
   for (uint32_t x = 0; x < grid_.tiles_x; ++x) build_tile(x, y, row);
 }
 
