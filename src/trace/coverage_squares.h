@@ -58,7 +58,7 @@ class SquareTests {
   /// `edges_near` are those near both x and y.
   bool meet(double x, double y, unsigned edges_near, InCell& one) const {
     const double a = at(0, x, y), b = at(1, x, y), c = at(2, x, y);
-    if (bit(a < -reach_[0]) | bit(b < -reach_[1]) | bit(c < -reach_[2])) return false;
+    if (a < -reach_[0] || b < -reach_[1] || c < -reach_[2]) return false;
     const unsigned inside = bit(a > reach_[0]) | bit(b > reach_[1]) << 1 | bit(c > reach_[2]) << 2;
     one.is_filled = inside == 7;
     one.edges = static_cast<uint8_t>(edges_near & ~inside);
