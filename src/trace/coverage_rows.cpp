@@ -159,20 +159,22 @@ void RowBuilder::drop_hidden(size_t cell) {
   end_[cell] = end;
 }
 
-void RowBuilder::write_cell(const CoverageTile& tile, size_t number, CoverageRow& row) {
+void RowBuilder::write_cell(CoverageTile tile, size_t number, CoverageRow& row) {
   const std::span<InCell> meets = list(number);
   CoverageCell cell;
   cell.first = static_cast<uint32_t>(row.references.size());
   if (covers_[number] > -kInf) cell.cover = code_below(tile, covers_[number]);
   sort_by_depth(meets);
   if (!meets.empty()) cell.far = code_above(tile, meets.front().highest);
+  row.references.resize(row.references.size() + meets.size());
+  CoverageRow::Reference* reference = row.references.data() + cell.first;
   for (const InCell& one : meets) {
     uint32_t& record = record_[one.slot];
     if (record == kNoTriangle) {
       record = static_cast<uint32_t>(row.records.size());
       row.records.push_back(seen_[one.slot].record);
     }
-    row.references.push_back({record, code_above(tile, one.highest)});
+    *reference++ = {record, code_above(tile, one.highest)};
   }
   row.cells.push_back(cell);
 }

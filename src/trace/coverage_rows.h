@@ -58,7 +58,7 @@ class RowBuilder {
   uint16_t code_above(const CoverageTile& tile, float s) const;
   uint16_t code_below(const CoverageTile& tile, float s) const;
   void drop_hidden(size_t cell);
-  void write_cell(const CoverageTile& tile, size_t number, CoverageRow& row);
+  void write_cell(CoverageTile tile, size_t number, CoverageRow& row);
 
   CoverageGrid& grid_;
   const TileMembers& members_;

@@ -75,9 +75,11 @@ bool SheetFinder::join_neighbours(std::span<const InCell> list) {
   }
   bool any = false;
   for (const InCell& one : list) {
-    any |= !parts_[one.slot].is_open;
-    Part& part = parts_[root(one.slot)];
-    part.is_open |= parts_[one.slot].is_open;
+    Part& own = parts_[one.slot];
+    any |= !own.is_open;
+    own.parent = root(one.slot);
+    Part& part = parts_[own.parent];
+    part.is_open |= own.is_open;
     part.lowest = std::min(part.lowest, one.lowest);
   }
   return any;
@@ -87,7 +89,7 @@ bool SheetFinder::join_neighbours(std::span<const InCell> list) {
 void SheetFinder::find_parity(std::span<const InCell> list, const CellSquare& cell) {
   const double x = cell.x + 0.31 * cell.half, y = cell.y + 0.17 * cell.half;  // off the lines of regular models
   for (const InCell& one : list) {
-    Part& part = parts_[root(one.slot)];
+    Part& part = parts_[parts_[one.slot].parent];
     if (part.is_open) continue;
     const Side side = side_of(tile_[one.slot], x, y);
     part.is_odd ^= side == Side::kIn;
