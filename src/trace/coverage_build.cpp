@@ -4,6 +4,7 @@
 #include <atomic>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "raygrain/error.h"
 
@@ -44,31 +45,46 @@ class RowBuilders {
   std::vector<std::unique_ptr<RowBuilder>> unused_;
 };
 
-/// Puts rows together, and numbers the triangles that cells refer to in the order of their first mention.
-void gather(std::vector<CoverageRow>& rows, CoverageGrid& grid) {
-  std::vector<uint32_t> number(grid.mesh->triangle_count(), kNoTriangle);
-  size_t cells = 0, references = 0, triangles = 0;
+/// Numbers the triangles that cells refer to in the order of their first mention: for each row, the numbers of its
+/// records. Returns their count.
+uint32_t number_triangles(const std::vector<CoverageRow>& rows, size_t mesh_triangles,
+                          std::vector<std::vector<uint32_t>>& numbers) {
+  std::vector<uint32_t> number_of(mesh_triangles, kNoTriangle);
+  uint32_t count = 0;
   for (const CoverageRow& row : rows) {
-    cells += row.cells.size(), references += row.references.size();
-    for (const CoverageTriangle& record : row.records) triangles += std::exchange(number[record.id], 0) != 0;
+    std::vector<uint32_t>& known = numbers.emplace_back();
+    known.reserve(row.records.size());
+    for (const CoverageTriangle& record : row.records) {
+      uint32_t& number = number_of[record.id];
+      if (number == kNoTriangle) number = count++;
+      known.push_back(number);
+    }
   }
+  return count;
+}
+
+/// Puts rows together.
+void gather(std::vector<CoverageRow>& rows, CoverageGrid& grid) {
+  size_t cells = 0, references = 0;
+  for (const CoverageRow& row : rows) cells += row.cells.size(), references += row.references.size();
   if (references > 0xffffffffu || cells > 0xffffffffu)
     throw Error(ErrorCode::kLimit, "coverage", "more than 2^32 cells or references");
-  std::fill(number.begin(), number.end(), kNoTriangle);
-  grid.allocate(triangles, cells + 1, references);
-  uint32_t tile = 0, cell_number = 0, reference_number = 0, known_number = 0;
-  for (CoverageRow& row : rows) {
+  std::vector<std::vector<uint32_t>> numbers;
+  grid.allocate(number_triangles(rows, grid.mesh->triangle_count(), numbers), cells + 1, references);
+  uint32_t tile = 0, cell_number = 0, reference_number = 0, triangle_number = 0;
+  for (size_t y = 0; y < rows.size(); ++y) {
+    CoverageRow& row = rows[y];
     uint32_t first_cell = cell_number;
     for (uint32_t x = 0; x < grid.tiles_x; ++x, ++tile) {
       grid.tiles[tile].first_cell = first_cell;
       first_cell += grid.tiles[tile].across * grid.tiles[tile].across;
     }
+    for (size_t i = 0; i < row.records.size(); ++i)
+      if (numbers[y][i] == triangle_number) grid.triangles[triangle_number++] = row.records[i];
     const uint32_t first = reference_number;
     for (const CoverageRow::Reference& reference : row.references) {
-      const CoverageTriangle& record = row.records[reference.record];
-      uint32_t& known = number[record.id];
-      if (known == kNoTriangle) grid.triangles[known = known_number++] = record;
-      grid.references[reference_number++] = {static_cast<uint16_t>(known), static_cast<uint16_t>(known >> 16),
+      const uint32_t number = numbers[y][reference.record];
+      grid.references[reference_number++] = {static_cast<uint16_t>(number), static_cast<uint16_t>(number >> 16),
                                              reference.code};
     }
     for (CoverageCell cell : row.cells) {

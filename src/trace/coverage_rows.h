@@ -1,6 +1,7 @@
 // The cells of one row of tiles.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <span>
@@ -34,10 +35,9 @@ class RowBuilder {
   void build(uint32_t y, CoverageRow& row);
 
  private:
-  struct Entry {
-    uint32_t cell;
-    InCell one;
-  };
+  static constexpr uint32_t kMostCellsAcross = 128;
+  static_assert(kMostCellsAcross * kMostCellsAcross <= 0x10000);  // cells have numbers of 16 bits
+
   /// Where the tile at hand has its cells.
   struct Raster {
     double x, y, width;
@@ -49,17 +49,16 @@ class RowBuilder {
   };
 
   void build_tile(uint32_t tile_x, uint32_t tile_y, CoverageRow& row);
-  bool list_entries(const Raster& raster);
+  bool list_entries(const Raster& raster, std::span<const uint32_t> ids);
+  void list_cells(const Raster& raster, uint32_t slot);
   void sort_entries(size_t cells);
-  std::span<InCell> list(size_t cell) {
-    return std::span(sorted_).subspan(begin_[cell], begin_[cell + 1] - begin_[cell]);
-  }
+  std::span<InCell> list(size_t cell) { return std::span(sorted_).subspan(begin_[cell], end_[cell] - begin_[cell]); }
   float slack(float s) const;
   void set_codes(CoverageTile& tile);
   uint16_t code_above(const CoverageTile& tile, float s) const;
   uint16_t code_below(const CoverageTile& tile, float s) const;
-  std::span<InCell> drop_hidden(std::span<InCell> list, float cover) const;
-  void write_cell(const CoverageTile& tile, size_t number, CoverageRow& row);
+  void drop_hidden(size_t cell);
+  void write_cell(CoverageTile tile, size_t number, CoverageRow& row);
 
   CoverageGrid& grid_;
   const TileMembers& members_;
@@ -68,10 +67,11 @@ class RowBuilder {
   // Of the tile at hand.
   SheetFinder sheets_;
   std::vector<SeenTriangle> seen_;
-  std::vector<Entry> entries_of_tile_;
-  std::vector<InCell> sorted_;            // by cell
-  std::vector<uint32_t> begin_, record_;  // of each cell in `sorted_`; of each seen triangle in its row's records
+  std::vector<InCell> entries_of_tile_, sorted_;  // by triangle; by cell
+  std::vector<uint32_t> begin_, end_;             // of each cell in `sorted_`
+  std::vector<uint32_t> record_;                  // of each seen triangle in its row's records
   std::vector<float> covers_;
+  std::array<unsigned, kMostCellsAcross> near_x_;  // of the triangle at hand: its edges near each column
 };
 
 }  // namespace raygrain

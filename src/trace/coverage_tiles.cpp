@@ -5,17 +5,12 @@
 #include <utility>
 
 #include "base/parallel.h"
-#include "geometry/rounding.h"
 
 namespace raygrain {
 namespace {
 
 constexpr uint32_t kMostTilesAcross = 2048;
 constexpr size_t kMostNearTriangles = 16;
-
-uint32_t cell_at(double position, uint32_t count) {
-  return static_cast<uint32_t>(std::clamp(std::floor(position), 0.0, static_cast<double>(count - 1)));
-}
 
 class TileFinder {
  public:
@@ -34,17 +29,21 @@ class TileFinder {
   bool choose_triangles() {
     const auto count = static_cast<uint32_t>(grid_.mesh->triangle_count());
     std::vector<uint8_t> is_seen(count);
-    std::vector<WindowPlace> places(count);
+    places_.resize(count);
     parallel_for(count, 4096, threads_, [&](size_t begin, size_t end) {
+      SeenTriangle seen;
       for (size_t i = begin; i < end; ++i) {
-        SeenTriangle seen;
-        const Seen found = look_at(grid_, members_.near_z, static_cast<uint32_t>(i), seen);
+        const Seen found = place_in_window(grid_, members_.near_z, static_cast<uint32_t>(i), seen);
         is_seen[i] = static_cast<uint8_t>(found);
-        if (found == Seen::kSeen) places[i] = place_of(seen);
+        if (found == Seen::kSeen) places_[i] = place_of(seen);
       }
     });
+    seen_.reserve(count);
     for (uint32_t i = 0; i < count; ++i) {
-      if (is_seen[i] == static_cast<uint8_t>(Seen::kSeen)) seen_.push_back(i), places_.push_back(places[i]);
+      if (is_seen[i] == static_cast<uint8_t>(Seen::kSeen)) {
+        places_[seen_.size()] = places_[i];
+        seen_.push_back(i);
+      }
       if (is_seen[i] == static_cast<uint8_t>(Seen::kNear)) grid_.near_triangles.push_back(i);
     }
     members_.seen = seen_.size();
@@ -64,33 +63,36 @@ class TileFinder {
     return sort_into_tiles();
   }
 
-  template <class Visit>
-  void visit_tiles(size_t number, const Visit& visit) const {
+  /// Appends the tiles of a triangle.
+  void list_tiles(size_t number, std::vector<uint32_t>& tiles) const {
     const WindowPlace& place = places_[number];
     const CellRange across = cells_of(place.x_lo, place.x_hi, grid_.x_lo, members_.edge, grid_.tiles_x);
     const CellRange down = cells_of(place.y_lo, place.y_hi, grid_.y_lo, members_.edge, grid_.tiles_y);
-    if (across.lo == across.hi && down.lo == down.hi) return visit(down.lo * grid_.tiles_x + across.lo);
+    if (across.lo == across.hi && down.lo == down.hi) return tiles.push_back(down.lo * grid_.tiles_x + across.lo);
     SeenTriangle seen;
     look_at(grid_, members_.near_z, seen_[number], seen);
     for (uint32_t y = down.lo; y <= down.hi; ++y)
       for (uint32_t x = across.lo; x <= across.hi; ++x)
         if (seen.may_touch(grid_.x_lo + (x + 0.5) * members_.edge, grid_.y_lo + (y + 0.5) * members_.edge,
                            members_.edge / 2))
-          visit(y * grid_.tiles_x + x);
+          tiles.push_back(y * grid_.tiles_x + x);
   }
 
   bool sort_into_tiles() {
     members_.begin.assign(size_t{grid_.tiles_x} * grid_.tiles_y + 1, 0);
-    uint64_t total = 0;
+    std::vector<uint32_t> tiles, ends(seen_.size());  // of all triangles; where those of each end
+    tiles.reserve(seen_.size() + seen_.size() / 2);
     for (size_t i = 0; i < seen_.size(); ++i) {
-      visit_tiles(i, [&](uint32_t tile) { ++members_.begin[tile + 1], ++total; });
-      if (members_.is_too_much(total) || total > 0xffffffffu) return false;
+      list_tiles(i, tiles);
+      if (members_.is_too_much(tiles.size()) || tiles.size() > 0xffffffffu) return false;
+      ends[i] = static_cast<uint32_t>(tiles.size());
     }
+    for (const uint32_t tile : tiles) ++members_.begin[tile + 1];
     for (size_t i = 1; i < members_.begin.size(); ++i) members_.begin[i] += members_.begin[i - 1];
     members_.ids.resize(members_.begin.back());
     std::vector<uint32_t> next(members_.begin.begin(), members_.begin.end() - 1);
-    for (size_t i = 0; i < seen_.size(); ++i)
-      visit_tiles(i, [&](uint32_t tile) { members_.ids[next[tile]++] = seen_[i]; });
+    for (size_t i = 0, at = 0; i < seen_.size(); ++i)
+      for (; at < ends[i]; ++at) members_.ids[next[tiles[at]]++] = seen_[i];
     grid_.tiles.resize(size_t{grid_.tiles_x} * grid_.tiles_y);
     return true;
   }
@@ -104,16 +106,6 @@ class TileFinder {
 };
 
 }  // namespace
-
-WindowPlace place_of(const SeenTriangle& seen) {
-  const double room = 2 * seen.margin;
-  return {float_below(seen.x_lo - room), float_above(seen.x_hi + room), float_below(seen.y_lo - room),
-          float_above(seen.y_hi + room)};
-}
-
-CellRange cells_of(float lo, float hi, double begin, double width, uint32_t count) {
-  return {cell_at((lo - begin) / width, count), cell_at((hi - begin) / width, count)};
-}
 
 std::optional<TileMembers> find_tile_members(CoverageGrid& grid, double near_z, const CoverageDensity& density,
                                              unsigned threads) {

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "geometry/rounding.h"
 #include "trace/coverage_triangle.h"
 
 namespace raygrain {
@@ -14,13 +15,23 @@ namespace raygrain {
 struct WindowPlace {
   float x_lo, x_hi, y_lo, y_hi;
 };
-WindowPlace place_of(const SeenTriangle& seen);
+inline WindowPlace place_of(const SeenTriangle& seen) {
+  const double room = 2 * seen.margin;
+  return {float_below(seen.x_lo - room), float_above(seen.x_hi + room), float_below(seen.y_lo - room),
+          float_above(seen.y_hi + room)};
+}
 
 struct CellRange {
   uint32_t lo, hi;
 };
 /// Cells of this width, `count` of them from `begin` on, that hold [lo, hi].
-CellRange cells_of(float lo, float hi, double begin, double width, uint32_t count);
+inline CellRange cells_of(float lo, float hi, double begin, double width, uint32_t count) {
+  const auto cell_at = [&](double position) {
+    if (!(position > 0)) return 0u;
+    return position < count ? static_cast<uint32_t>(position) : count - 1;
+  };
+  return {cell_at((lo - begin) / width), cell_at((hi - begin) / width)};
+}
 
 struct TileMembers {
   double near_z = 0;  // as look_at takes it

@@ -30,17 +30,25 @@ Outline cut(const Outline& outline, Vec3d side, double offset = 0) {
   return result;
 }
 
+/// Without the branches of lists.
+double least(double a, double b, double c) {
+  return std::min(std::min(a, b), c);
+}
+double greatest(double a, double b, double c) {
+  return std::max(std::max(a, b), c);
+}
+
 void bound_parallel(const std::array<Vec3d, 3>& q, SeenTriangle& seen) {
-  seen.x_lo = std::min({q[0].x, q[1].x, q[2].x}), seen.x_hi = std::max({q[0].x, q[1].x, q[2].x});
-  seen.y_lo = std::min({q[0].y, q[1].y, q[2].y}), seen.y_hi = std::max({q[0].y, q[1].y, q[2].y});
-  seen.s_lo = std::min({q[0].z, q[1].z, q[2].z}), seen.s_hi = std::max({q[0].z, q[1].z, q[2].z});
+  seen.x_lo = least(q[0].x, q[1].x, q[2].x), seen.x_hi = greatest(q[0].x, q[1].x, q[2].x);
+  seen.y_lo = least(q[0].y, q[1].y, q[2].y), seen.y_hi = greatest(q[0].y, q[1].y, q[2].y);
+  seen.s_lo = least(q[0].z, q[1].z, q[2].z), seen.s_hi = greatest(q[0].z, q[1].z, q[2].z);
 }
 
 /// Does the triangle come within `distance` of the eye, in all coordinates?
 bool is_around_eye(const Corners& q, double distance) {
   for (int axis = 0; axis < 3; ++axis) {
     const double a = q[0][axis], b = q[1][axis], c = q[2][axis];
-    if (std::min({a, b, c}) > distance || std::max({a, b, c}) < -distance) return false;
+    if (least(a, b, c) > distance || greatest(a, b, c) < -distance) return false;
   }
   Outline outline{{q[0], q[1], q[2]}, 3};
   for (int axis = 0; axis < 3; ++axis) {
@@ -164,29 +172,43 @@ bool set_edges(const CoverageGrid& grid, const Corners& corners, double turn, Se
   return true;
 }
 
-}  // namespace
+std::array<Vec3d, 3> turned_corners(const CoverageGrid& grid, uint32_t id) {
+  return {grid.map.turned(grid.mesh->vertex(id, 0)), grid.map.turned(grid.mesh->vertex(id, 1)),
+          grid.map.turned(grid.mesh->vertex(id, 2))};
+}
 
-Seen look_at(const CoverageGrid& grid, double near_z, uint32_t id, SeenTriangle& seen) {
+Seen bound(const CoverageGrid& grid, double near_z, const std::array<Vec3d, 3>& q, SeenTriangle& seen) {
   const ColumnErrors& e = grid.errors;
-  std::array<Vec3d, 3> q;
-  for (int i = 0; i < 3; ++i) q[static_cast<size_t>(i)] = grid.map.turned(grid.mesh->vertex(id, i));
-  seen = {};
-  Corners corners = q;
   if (grid.map.is_eye) {
-    if (is_around_eye(q, grid.errors.end)) return Seen::kNear;
+    if (is_around_eye(q, e.end)) return Seen::kNear;
     double nearest = 0;
     if (!bound_before_eye(grid, q, seen, nearest)) return Seen::kNothing;
     if (!(nearest >= near_z)) return Seen::kNear;
   } else {
-    for (Vec3d& corner : corners) corner.z = 1;
     bound_parallel(q, seen);
   }
   seen.margin = 1.25 * (e.place + e.evaluation + (grid.map.is_eye ? e.drift * seen.s_hi : e.drift));
-  if (seen.x_hi < grid.x_lo - seen.margin || seen.x_lo > grid.x_hi + seen.margin ||
-      seen.y_hi < grid.y_lo - seen.margin || seen.y_lo > grid.y_hi + seen.margin)
-    return Seen::kNothing;
+  const bool is_outside = seen.x_hi < grid.x_lo - seen.margin || seen.x_lo > grid.x_hi + seen.margin ||
+                          seen.y_hi < grid.y_lo - seen.margin || seen.y_lo > grid.y_hi + seen.margin;
+  return is_outside ? Seen::kNothing : Seen::kSeen;
+}
 
+}  // namespace
+
+Seen place_in_window(const CoverageGrid& grid, double near_z, uint32_t id, SeenTriangle& seen) {
+  return bound(grid, near_z, turned_corners(grid, id), seen);
+}
+
+Seen look_at(const CoverageGrid& grid, double near_z, uint32_t id, SeenTriangle& seen) {
+  const ColumnErrors& e = grid.errors;
+  const std::array<Vec3d, 3> q = turned_corners(grid, id);
+  if (const Seen found = bound(grid, near_z, q, seen); found != Seen::kSeen) return found;
+  Corners corners = q;
+  if (!grid.map.is_eye)
+    for (Vec3d& corner : corners) corner.z = 1;
   bound_edges(grid.map.is_eye, near_z, corners, seen);
+  seen.has_plane = false;
+  seen.record = {};
   seen.record.margin = static_cast<float>(seen.margin * 1.0001);
   seen.record.id = id;
   PlaneOfDepth plane = plane_of(grid.map.is_eye, corners, q);
@@ -213,37 +235,6 @@ bool SeenTriangle::may_touch(double x, double y, double half) const {
     if (edge[0] * x + edge[1] * y + edge[2] < -reach) return false;
   }
   return true;
-}
-
-bool SeenTriangle::edge_may_touch(size_t edge, double x, double y, double half) const {
-  const double room = half + 2 * margin;
-  const auto& box = edge_boxes[edge];
-  if (x + room < box[0] || x - room > box[1] || y + room < box[2] || y - room > box[3]) return false;
-  if (!is_clear) return true;
-  const auto& line = edges[edge];
-  const double reach = (std::abs(line[0]) + std::abs(line[1])) * (half + margin) + margin;
-  return std::abs(line[0] * x + line[1] * y + line[2]) <= reach;
-}
-
-bool SeenTriangle::fills(double x, double y, double half) const {
-  if (!is_clear) return false;
-  for (const auto& edge : edges) {
-    const double reach = (std::abs(edge[0]) + std::abs(edge[1])) * (half + margin) + margin;
-    if (!(edge[0] * x + edge[1] * y + edge[2] > reach)) return false;
-  }
-  return true;
-}
-
-double SeenTriangle::lowest(double x, double y, double half) const {
-  if (!has_plane) return s_lo;
-  const double reach = (std::abs(slope_x) + std::abs(slope_y)) * (half + margin) + plane_error;
-  return std::max(s_lo, slope_x * x + slope_y * y + offset - reach);
-}
-
-double SeenTriangle::highest(double x, double y, double half) const {
-  if (!has_plane) return s_hi;
-  const double reach = (std::abs(slope_x) + std::abs(slope_y)) * (half + margin) + plane_error;
-  return std::min(s_hi, slope_x * x + slope_y * y + offset + reach);
 }
 
 }  // namespace raygrain

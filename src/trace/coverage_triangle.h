@@ -23,13 +23,6 @@ struct SeenTriangle {
 
   /// May a column within `half` of (x, y), in both coordinates, or within margins of that, meet it? By its edges.
   bool may_touch(double x, double y, double half) const;
-  /// May such a column come near an edge?
-  bool edge_may_touch(size_t edge, double x, double y, double half) const;
-  /// Does every such column meet it, strictly?
-  bool fills(double x, double y, double half) const;
-  /// Its least and greatest depth in such columns, widened by errors.
-  double lowest(double x, double y, double half) const;
-  double highest(double x, double y, double half) const;
 };
 
 enum class Seen {
@@ -38,7 +31,8 @@ enum class Seen {
   kSeen,
 };
 
-/// `near_z` counts for eyes.
+/// Only where it is: sets its place, its depths without margins, and `margin`. `near_z` counts for eyes.
+Seen place_in_window(const CoverageGrid& grid, double near_z, uint32_t id, SeenTriangle& seen);
 Seen look_at(const CoverageGrid& grid, double near_z, uint32_t id, SeenTriangle& seen);
 
 }  // namespace raygrain
