@@ -42,8 +42,9 @@ struct RayFrame {
 std::optional<RayFrame> parallel_frame(FrameKind kind, Vec3 direction, Vec3 center);
 
 /// The frame of an influence area; its domain holds the area's region with all slack, and goes on beyond its far face
-/// (and, for parallel rays, before its near face). Nothing for kinds that do not suit the area, and for a point area
-/// whose near plane is closer to the eye than the slack of its region.
+/// (and, for parallel rays, before its near face). Nothing for kinds that do not suit the area, for a point area
+/// whose near plane is closer to the eye than the slack of its region, and for a plane area whose middle is beyond the
+/// largest float.
 std::optional<RayFrame> area_frame(FrameKind kind, const AreaGeometry& area);
 
 /// The kinds for which area_frame returns one, in the order of the enumeration.

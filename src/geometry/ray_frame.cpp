@@ -76,7 +76,9 @@ void set_window(RayFrame& frame, std::span<const Vec3d> corners) {
 }
 
 std::optional<RayFrame> plane_area_frame(FrameKind kind, const AreaGeometry& area) {
-  std::optional<RayFrame> frame = parallel_frame_at(kind, area.frame(), middle(area.region()));
+  const Vec3d center = middle(area.region());
+  if (!is_finite(to_float(center))) return {};  // the area's own corners are beyond floats
+  std::optional<RayFrame> frame = parallel_frame_at(kind, area.frame(), center);
   if (!frame) return {};
   std::array<Vec3d, 8> corners;
   std::ranges::transform(area.region().outer_corners, corners.begin(), [&](Vec3d p) { return to_local(*frame, p); });

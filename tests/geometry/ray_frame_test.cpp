@@ -195,6 +195,14 @@ TEST(RayFrame, CentersOfParallelRaysAreFloats) {
   });
 }
 
+// Its far face lies beyond the largest float, and so does its middle: a frame there would hold nothing, and say so.
+TEST(RayFrame, NoneForAreasWithAMiddleBeyondFloats) {
+  const InfluenceArea huge{"huge", PlaneArea{{0, -2.1e38f, 0}, {0, -1, 0}, {0, 0, 1}, 1e38f, 1e38f, 3e38f}};
+  EXPECT_TRUE(frame_kinds(AreaGeometry(huge)).empty());
+  const InfluenceArea large{"large", PlaneArea{{0, -1e38f, 0}, {0, -1, 0}, {0, 0, 1}, 1e38f, 1e38f, 3e38f}};
+  EXPECT_FALSE(frame_kinds(AreaGeometry(large)).empty());
+}
+
 TEST(RayFrame, TheDomainHoldsTheRegion) {
   for_frames(100, [&](const RayFrame& frame, const AreaGeometry& area, Random& random) {
     for (int i = 0; i < 20; ++i)
