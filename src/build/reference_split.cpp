@@ -163,9 +163,11 @@ void ReferenceBuilder<Reference>::part_by_keys(const OpenRange& node, const Cut&
   const std::span<const Reference> all = references_of(node);
   Reference* const target = buffer(!node.in_second).data();
   if (cut.kind == Cut::Kind::kHalves) {
+    // Smaller nodes have fewer slices: those may tell keys apart, and then want the exact box of them.
+    for (const Reference& reference : all.first(cut.left_count)) children.left.keys.extend(reference);
+    for (const Reference& reference : all.subspan(cut.left_count)) children.right.keys.extend(reference);
     std::copy_n(all.begin(), cut.left_count, target + children.left.begin);
     std::copy(all.begin() + cut.left_count, all.end(), target + children.right.begin);
-    children.left.keys = children.right.keys = node.keys;
     return;
   }
   const size_t chunks = chunks_of(node.context);

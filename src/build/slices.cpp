@@ -130,8 +130,8 @@ size_t Slices::count_below(int axis, uint32_t end) const {
 }
 
 /// Adds a candidate for each plane above a filled slice, but for the last slice: first the left sides upwards, then the
-/// right sides downwards. The least key is in the first slice and the greatest in the last, so no side is empty. A
-/// plane above an empty slice is overwritten by the next: to jump past it would take longer.
+/// right sides downwards. The box of the keys is exact: the least is in the first slice and the greatest in the last,
+/// so no side is empty. A plane above an empty slice is overwritten by the next: to jump past it would take longer.
 void Slices::sweep(int axis, uint32_t choice, CutCandidates& candidates) const {
   const PackedBox* const boxes = boxes_.data() + static_cast<size_t>(axis) * slices_;
   const uint32_t* const counts = counts_.data() + static_cast<size_t>(axis) * slices_;

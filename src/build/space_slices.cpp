@@ -24,7 +24,7 @@ SpaceGrid::SpaceGrid(const Bounds& box) {
     lo[i] = box.lo[axis];
     step[i] = length[axis] * (1.0f / kSlices);
     const float candidate = kSlices / length[axis];
-    scale[i] = candidate <= std::numeric_limits<float>::max() ? candidate : 0;
+    scale[i] = candidate > 0 && candidate <= std::numeric_limits<float>::max() ? candidate : 0;  // a length may be -0
   }
 }
 

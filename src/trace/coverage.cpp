@@ -258,7 +258,7 @@ std::vector<std::vector<uint32_t>> Coverage::divide(std::span<const Coverage* co
   if (coverages.empty() || coverages.size() >= kNoGrid)
     throw Error(ErrorCode::kUsage, "Coverage::divide", "takes 1 ... 254 coverages");
   if (points.size() > 0xffffffffu)
-    throw Error(ErrorCode::kLimit, "Coverage::divide", "more than 2^32 points in one call");
+    throw Error(ErrorCode::kLimit, "Coverage::divide", "2^32 points or more in one call");
   std::vector<const CoverageGrid*> grids;
   for (const Coverage* coverage : coverages) grids.push_back(&coverage->data_->grid);
   const EyeGrids eye{grids.data(), static_cast<uint32_t>(grids.size())};

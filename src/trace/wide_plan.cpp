@@ -103,7 +103,7 @@ void WidePlan::price_inner(size_t i) {
     best[places] = cost;
   }
   for (size_t places = useful + 1; places <= form_.width; ++places) best[places] = best[useful];
-  best[1] = node_cost(i);  // from the costs of its children in places 1 ... 8
+  best[1] = node_cost(i);  // from the costs of its children in all places of a node
   if (node.count <= options_.max_leaf_size && leaf_cost(i) <= best[1]) {
     best[1] = leaf_cost(i);
     node.merged = true;

@@ -74,6 +74,27 @@ TEST(References, CopeWithZerosOfBothSigns) {
   expect_one_tree(bounds);
 }
 
+/// So near to each other that slices of many primitives are too thin for floats, and those of few are not: nodes are
+/// halved first and sliced further down.
+TEST(References, CopeWithKeysAtTheEndOfFloats) {
+  for (const bool shuffled : {false, true})
+    for (const float width : {0.0f, 1.0f}) {  // middles of boxes, or keys of their own
+      Random random(4);
+      std::vector<Bounds> bounds;
+      std::vector<Vec3> keys;
+      for (int i = 0; i < 1000; ++i) {
+        const float x = static_cast<float>(shuffled ? random.below(1000) : static_cast<uint64_t>(i)) * 4e-41f;
+        bounds.push_back({{width > 0 ? 0 : x, 0, 0}, {width > 0 ? width : x, 1, 1}});
+        keys.push_back({x, width > 0 ? 0 : 0.5f, width > 0 ? 0 : 0.5f});
+      }
+      for (const BuildOptions& options : settings(bounds))
+        for (const Builder build : kBuilders) {
+          const Bvh tree = build(bounds, keys, options, nullptr);
+          EXPECT_FALSE(find_defect(tree, bounds)) << shuffled << " " << width;
+        }
+    }
+}
+
 TEST(References, CopeWithSumsBeyondFloat) {
   Random random(2);
   std::vector<Bounds> bounds;
