@@ -101,7 +101,7 @@ Bvh build_binned(std::span<const Bounds> bounds, std::span<const Vec3> centroids
   const Input input = builder::checked_input(bounds, centroids, options.threads);
   if (builder::has_references(input, options.strategy))
     return builder::build_from_references(input, options, false, log);
-  return builder::timed_build(bounds, centroids, options, log, [&](const Input& all, builder::Laps& laps) {
+  return builder::timed_build(input, options, log, [&](const Input& all, builder::Laps& laps) {
     return BinnedBuilder(all, options, laps).build(log);
   });
 }

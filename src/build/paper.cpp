@@ -147,7 +147,9 @@ class PaperBuilder {
 
 Bvh build_paper(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                 BuildLog* log) {
-  return builder::timed_build(bounds, centroids, options, log, [&](const Input& input, builder::Laps& laps) {
+  validate(options);
+  const Input checked = builder::checked_input(bounds, centroids, options.threads);
+  return builder::timed_build(checked, options, log, [&](const Input& input, builder::Laps& laps) {
     return PaperBuilder(input, options, laps).build(log);
   });
 }

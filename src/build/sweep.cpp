@@ -161,7 +161,9 @@ class SweepBuilder {
 
 Bvh build_sweep(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
                 BuildLog* log) {
-  return builder::timed_build(bounds, centroids, options, log, [&](const Input& input, builder::Laps& laps) {
+  validate(options);
+  const Input checked = builder::checked_input(bounds, centroids, options.threads);
+  return builder::timed_build(checked, options, log, [&](const Input& input, builder::Laps& laps) {
     return SweepBuilder(input, options).build(laps, log);
   });
 }

@@ -1,21 +1,18 @@
-// What builders do around their own work: refuse bad options and input, start their log, take the time.
+// What builders do around their own work: complete the input, start their log, take the time.
 #pragma once
 
-#include <span>
+#include <vector>
 
 #include "build/laps.h"
 #include "build/strategy.h"
 
 namespace raygrain::builder {
 
-/// build(input, laps) -> Bvh. The input that it gets has all centroids.
+/// build(input, laps) -> Bvh. The input that it gets is this one, checked before, with all centroids.
 template <class Build>
-Bvh timed_build(std::span<const Bounds> bounds, std::span<const Vec3> centroids, const BuildOptions& options,
-                BuildLog* log, const Build& build) {
-  validate(options);
-  Input input = checked_input(bounds, centroids, options.threads);
+Bvh timed_build(Input input, const BuildOptions& options, BuildLog* log, const Build& build) {
   std::vector<Vec3> centers;
-  if (centroids.empty()) input.centroids = centers = box_centers(bounds, options.threads);
+  if (input.centroids.empty()) input.centroids = centers = box_centers(input.bounds, options.threads);
   if (log) *log = {};
   Laps laps(log ? &log->times : nullptr);
   Bvh bvh = build(input, laps);

@@ -4,29 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "base/sort_few.h"
+
 namespace raygrain {
 
 namespace {
 
 float code(const CoverageTile& tile, float s) {
   return (s - tile.lowest) * tile.per_depth + kFirstCode;
-}
-
-/// Nearest to the light first, then by slots, which are in the order of ids.
-void sort_by_depth(std::span<InCell> list) {
-  constexpr size_t kShort = 24;
-  if (list.size() > kShort) {
-    std::sort(list.begin(), list.end(), [](const InCell& a, const InCell& b) {
-      return a.highest != b.highest ? a.highest > b.highest : a.slot < b.slot;
-    });
-    return;
-  }
-  for (size_t i = 1; i < list.size(); ++i) {
-    const InCell one = list[i];
-    size_t at = i;
-    for (; at > 0 && list[at - 1].highest < one.highest; --at) list[at] = list[at - 1];
-    list[at] = one;
-  }
 }
 
 }  // namespace
@@ -164,7 +149,8 @@ void RowBuilder::write_cell(CoverageTile tile, size_t number, CoverageRow& row) 
   CoverageCell cell;
   cell.first = static_cast<uint32_t>(row.references.size());
   if (covers_[number] > -kInf) cell.cover = code_below(tile, covers_[number]);
-  sort_by_depth(meets);
+  // Nearest to the light first, then by slots, which are in the order of ids.
+  sort_few(meets, [](const InCell& a, const InCell& b) { return a.highest > b.highest; });
   if (!meets.empty()) cell.far = code_above(tile, meets.front().highest);
   row.references.resize(row.references.size() + meets.size());
   CoverageRow::Reference* reference = row.references.data() + cell.first;

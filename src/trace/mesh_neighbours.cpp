@@ -4,6 +4,7 @@
 #include <numeric>
 #include <span>
 
+#include "base/sort_few.h"
 #include "trace/coverage_grid.h"
 
 namespace raygrain {
@@ -31,19 +32,6 @@ struct Edge {
   uint32_t triangle, number;  // of the edge in the triangle
 };
 
-/// By their other ends. Those that share both ends keep their order: by triangles.
-void sort_fan(std::span<Edge> fan) {
-  constexpr size_t kShort = 24;
-  if (fan.size() > kShort)
-    return std::stable_sort(fan.begin(), fan.end(), [](const Edge& a, const Edge& b) { return a.other < b.other; });
-  for (size_t i = 1; i < fan.size(); ++i) {
-    const Edge edge = fan[i];
-    size_t at = i;
-    for (; at > 0 && fan[at - 1].other > edge.other; --at) fan[at] = fan[at - 1];
-    fan[at] = edge;
-  }
-}
-
 }  // namespace
 
 MeshNeighbours find_neighbours(const TriangleMesh& mesh) {
@@ -65,7 +53,8 @@ MeshNeighbours find_neighbours(const TriangleMesh& mesh) {
   MeshNeighbours neighbours(mesh.triangle_count(), {kNoNeighbour, kNoNeighbour, kNoNeighbour});
   for (size_t vertex = 0; vertex < mesh.vertices.size(); ++vertex) {
     const std::span<Edge> fan = std::span(edges).subspan(begin[vertex], begin[vertex + 1] - begin[vertex]);
-    sort_fan(fan);
+    // Those that share both ends keep their order: by triangles.
+    sort_few(fan, [](const Edge& a, const Edge& b) { return a.other < b.other; });
     for (size_t i = 0, end = 0; i < fan.size(); i = end) {
       while (end < fan.size() && fan[end].other == fan[i].other) ++end;
       if (end - i != 2) continue;

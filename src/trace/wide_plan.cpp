@@ -6,6 +6,8 @@
 
 #include "raygrain/error.h"
 
+#include "base/sort_few.h"
+
 namespace raygrain {
 
 void validate(const WideOptions& options, size_t width) {
@@ -126,16 +128,6 @@ void WidePlan::collect_halves(uint32_t i, size_t places, std::vector<uint32_t>& 
   collect(binary_[i].left, left, roots);
   collect(binary_[i].left + 1, places - left, roots);
 }
-/// The most probable last: any hit takes the last first. Equal ones keep their order.
-void WidePlan::sort(std::vector<uint32_t>& roots) const {
-  for (size_t i = 1; i < roots.size(); ++i) {
-    const uint32_t root = roots[i];
-    size_t place = i;
-    for (; place > 0 && measures_[root] < measures_[roots[place - 1]]; --place) roots[place] = roots[place - 1];
-    roots[place] = root;
-  }
-}
-
 void WidePlan::plan() {
   items_.push_back({.root = 0});
   std::vector<uint32_t> pending{0}, roots;
@@ -148,7 +140,8 @@ void WidePlan::plan() {
       roots.push_back(root);  // the whole tree is one leaf: the only child of the root node
     else
       collect_halves(root, form_.width, roots);
-    sort(roots);
+    // The most probable last: any hit takes the last first.
+    sort_few(std::span(roots), [&](uint32_t a, uint32_t b) { return measures_[a] < measures_[b]; });
     plan_children(index, roots, pending);
   }
   if (node_bytes_ + leaf_bytes_ > uint64_t{1} << 43)

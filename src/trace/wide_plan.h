@@ -82,7 +82,6 @@ class WidePlan {
   void price_inner(size_t i);
   void collect(uint32_t i, size_t places, std::vector<uint32_t>& roots) const;
   void collect_halves(uint32_t i, size_t places, std::vector<uint32_t>& roots) const;
-  void sort(std::vector<uint32_t>& roots) const;
   bool is_wide_leaf(uint32_t i) const { return binary_[i].left == 0 || binary_[i].merged; }
   void plan();
   void plan_children(uint32_t parent, const std::vector<uint32_t>& roots, std::vector<uint32_t>& pending);
