@@ -46,8 +46,10 @@ void run_chunks(size_t chunks, unsigned threads, const std::function<void(size_t
 #else
 void run_chunks(size_t chunks, unsigned threads, const std::function<void(size_t)>& run) {
   // More threads than processors help nobody, and oneTBB prints a warning about them.
-  tbb::task_arena arena(static_cast<int>(std::min(threads, default_threads())));
-  arena.execute([&] { tbb::parallel_for(size_t{0}, chunks, run); });
+  const auto wanted = static_cast<int>(std::min(threads, default_threads()));
+  const auto loop = [&] { tbb::parallel_for(size_t{0}, chunks, run); };
+  if (tbb::this_task_arena::max_concurrency() == wanted) return loop();  // workers come to a new arena late
+  tbb::task_arena(wanted).execute(loop);
 }
 #endif
 

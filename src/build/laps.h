@@ -1,6 +1,8 @@
 // Time of a build, split into parts that do not overlap; free when nobody asks.
 #pragma once
 
+#include <span>
+
 #include "raygrain/build.h"
 
 #include "base/timer.h"
@@ -31,5 +33,21 @@ class Laps {
   Timer timer_;
   double last_ = 0;
 };
+
+/// Charges the parts of what was done side by side to the wall-clock time that it took together.
+template <class Piece>
+void add_scaled(BuildTimes& times, std::span<const Piece> pieces, double seconds) {
+  BuildTimes sum;
+  for (const auto& piece : pieces) {
+    sum.total += piece.times.total;
+    for (const auto part : {&BuildTimes::orientations, &BuildTimes::candidates, &BuildTimes::partition,
+                            &BuildTimes::stop, &BuildTimes::nodes})
+      sum.*part += piece.times.*part;
+  }
+  if (!(sum.total > 0)) return;
+  for (const auto part : {&BuildTimes::orientations, &BuildTimes::candidates, &BuildTimes::partition, &BuildTimes::stop,
+                          &BuildTimes::nodes})
+    times.*part += sum.*part * (seconds / sum.total);
+}
 
 }  // namespace raygrain::builder

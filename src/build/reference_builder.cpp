@@ -12,23 +12,6 @@ namespace raygrain::builder {
 
 namespace {
 
-constexpr size_t kSubtree = 16384;  // nodes of up to this many references are built by one thread
-
-/// Charges the subtrees' parts to the wall-clock time that they took together.
-void add_scaled(BuildTimes& times, const std::vector<Piece>& pieces, double seconds) {
-  BuildTimes sum;
-  for (const Piece& piece : pieces) {
-    sum.total += piece.times.total;
-    for (const auto part : {&BuildTimes::orientations, &BuildTimes::candidates, &BuildTimes::partition,
-                            &BuildTimes::stop, &BuildTimes::nodes})
-      sum.*part += piece.times.*part;
-  }
-  if (!(sum.total > 0)) return;
-  for (const auto part : {&BuildTimes::orientations, &BuildTimes::candidates, &BuildTimes::partition, &BuildTimes::stop,
-                          &BuildTimes::nodes})
-    times.*part += sum.*part * (seconds / sum.total);
-}
-
 /// Writes one reference, numbers one by one; its key. To write lanes and read them at once as a vector would be slow.
 Vec3 put(const Input& input, size_t i, Reference& reference) {
   const Bounds& box = input.bounds[i];
@@ -97,48 +80,18 @@ Bvh ReferenceBuilder<Reference>::build(BuildLog* log) {
   root_measure_ = root.measure = strategy_.measure(root.context.bounds, root.context);
   laps.lap(&BuildTimes::nodes);
 
-  split_top(root, laps);
+  split_top(root, log ? &log->times : nullptr);
   std::vector<Piece> pieces(subtrees_.size());
   const Timer timer;
   parallel_for(pieces.size(), 1, options_.threads, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) pieces[i] = build_piece(subtrees_[i]);
   });
   laps.skip();
-  if (log) add_scaled(log->times, pieces, timer.seconds());
+  if (log) add_scaled<Piece>(log->times, pieces, timer.seconds());
   if (log) log->peak_bytes = both_.bytes();
   Bvh bvh = assemble(pieces, log);
   laps.lap(&BuildTimes::nodes);
   return bvh;
-}
-
-/// Splits nodes until each is small enough for one thread.
-template <class Reference>
-void ReferenceBuilder<Reference>::split_top(const OpenRange& root, Laps& laps) {
-  top_.assign(1, {});
-  std::vector<OpenRange> open{root};
-  Scratch scratch;
-  while (!open.empty()) {
-    const OpenRange node = open.back();
-    open.pop_back();
-    Children children;
-    NodeLog note;
-    const bool is_large = node.context.count > kSubtree;
-    if (!is_large || !split(node, scratch, options_.threads, children, note, laps)) {
-      top_[node.index].piece = static_cast<int64_t>(subtrees_.size());
-      subtrees_.push_back(node);
-      subtrees_.back().index = 0;
-      continue;
-    }
-    const auto first = static_cast<uint32_t>(top_.size());
-    top_[node.index].node = {node.context.bounds, first, 0};
-    top_[node.index].note = note;
-    top_.resize(top_.size() + 2);
-    children.left.index = first;
-    children.right.index = first + 1;
-    open.push_back(children.right);
-    open.push_back(children.left);
-    monitor_.finish(0);
-  }
 }
 
 /// Depth first, left before right; children are allocated in pairs.

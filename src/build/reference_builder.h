@@ -1,8 +1,9 @@
 // The parallel builder behind build_binned and build_spatial: top-down over packed references.
 //
-// Large nodes are split one after the other, each by parallel loops over chunks of its references; what is left are
-// subtrees, each built by one thread into memory of its own; at last all are copied to their places, which their sizes
-// alone decide. Chunks depend on counts only and merge in order, so no thread decides a bit of the tree.
+// The largest nodes are split one after the other, each by parallel loops over chunks of its references; smaller ones
+// level by level, side by side; what is left are subtrees, each built by one thread into memory of its own; at last all
+// are copied to their places, which their sizes alone decide. Chunks depend on counts only and merge in order, so no
+// thread decides a bit of the tree.
 #pragma once
 
 #include <vector>
@@ -47,6 +48,13 @@ class ReferenceBuilder {
   struct Children {
     OpenRange left, right;
   };
+  /// What became of a node above all subtrees, or at the root of one.
+  struct TopSplit {
+    bool is_split = false;
+    Children children;
+    NodeLog note;
+    BuildTimes times;
+  };
   /// Nodes above all subtrees.
   struct TopNode {
     Bvh::Node node;  // first: of the children in this list
@@ -55,7 +63,9 @@ class ReferenceBuilder {
   };
 
   void fill(std::span<Reference> references, Bounds& box, KeyBox& keys) const;
-  void split_top(const OpenRange& root, Laps& laps);
+  void split_top(const OpenRange& root, BuildTimes* times);
+  void split_for_top(const OpenRange& node, Scratch& scratch, unsigned threads, TopSplit& result) const;
+  std::vector<OpenRange> next_level(std::span<const OpenRange> level, std::span<TopSplit> splits);
   Piece build_piece(const OpenRange& root) const;
   bool split(const OpenRange& node, Scratch& scratch, unsigned threads, Children& children, NodeLog& note,
              Laps& laps) const;

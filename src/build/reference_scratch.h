@@ -6,7 +6,7 @@
 
 namespace raygrain::builder {
 
-inline constexpr size_t kChunk = 16384;  // references that one thread takes at a time
+inline constexpr size_t kChunk = 4096;  // references that one thread takes at a time
 
 template <class Reference>
 struct ReferenceBuilder<Reference>::Scratch {

@@ -83,7 +83,10 @@ std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr
     *cost = estimated_cost(tree, build.strategy.measure, build.costs) *
             static_cast<double>(build.strategy.measure(tree.nodes[0].bounds)) * options.weights.z;
   return FrameTree(frame, tree, std::move(corners),
-                   {.measure = build.strategy.measure, .isa = options.isa, .max_leaf_size = kMostFrameTriangles});
+                   {.measure = build.strategy.measure,
+                    .isa = options.isa,
+                    .max_leaf_size = kMostFrameTriangles,
+                    .threads = options.threads});
 }
 
 }  // namespace raygrain

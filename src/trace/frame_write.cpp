@@ -5,6 +5,7 @@
 
 #include "raygrain/error.h"
 
+#include "base/parallel.h"
 #include "geometry/frame_triangle.h"
 #include "geometry/rounding.h"
 #include "trace/frame_memory.h"
@@ -46,7 +47,8 @@ void set_sizes(FrameMemory& tree, const Bounds& bounds) {
 
 class FrameWriter {
  public:
-  FrameWriter(const WidePlan& plan, FrameMemory& tree) : plan_(plan), tree_(tree), refs_(plan.items().size()) {}
+  FrameWriter(const WidePlan& plan, FrameMemory& tree, unsigned threads)
+      : plan_(plan), tree_(tree), threads_(threads), refs_(plan.items().size()) {}
 
   void run() {
     const uint64_t bytes = plan_.node_bytes() + plan_.leaf_bytes() + kLeafSlack;
@@ -54,21 +56,41 @@ class FrameWriter {
     tree_.nodes = plan_.nodes();
     tree_.leaves = plan_.leaves();
     tree_.memory = LineMemory(bytes);
-    for (size_t i = plan_.items().size(); i-- > 0;) plan_.items()[i].is_leaf() ? write_leaf(i) : write_node(i);
+    write_leaves();
+    write_nodes();
   }
 
  private:
-  void write_leaf(size_t index) {
-    const WideItem& item = plan_.items()[index];
-    ids_.clear();
-    plan_.gather(item, ids_);
-    const size_t count = ids_.size(), offset = plan_.node_bytes() + item.offset;
+  static constexpr size_t kItemsPerTask = 1024;
+
+  /// And all references, which nodes hold of their children.
+  void write_leaves() {
+    parallel_for(refs_.size(), kItemsPerTask, threads_, [&](size_t begin, size_t end) {
+      std::vector<uint32_t> ids;
+      for (size_t i = begin; i < end; ++i) {
+        const WideItem& item = plan_.items()[i];
+        ids.clear();
+        if (item.is_leaf()) plan_.gather(item, ids);
+        refs_[i] = item.is_leaf() ? write_leaf(item, ids) : frame_ref(item.offset, 0);
+      }
+    });
+  }
+
+  void write_nodes() {
+    parallel_for(refs_.size(), kItemsPerTask, threads_, [&](size_t begin, size_t end) {
+      for (size_t i = begin; i < end; ++i)
+        if (const WideItem& item = plan_.items()[i]; !item.is_leaf()) write_node(item);
+    });
+  }
+
+  FrameRef write_leaf(const WideItem& item, std::span<const uint32_t> ids) {
+    const size_t count = ids.size(), offset = plan_.node_bytes() + item.offset;
     auto* out = new (tree_.memory.data() + offset) float[2 + FrameLeaf::kFields * count];
     const auto field = [&](size_t k, size_t lane) -> float& { return out[2 + k * count + lane]; };
     const Bounds& leaf = plan_.bounds(item);
     double most_error = 0;
     for (size_t lane = 0; lane < count; ++lane) {
-      const auto& [a, b, c] = tree_.corners->at_id(ids_[lane]);
+      const auto& [a, b, c] = tree_.corners->at_id(ids[lane]);
       const Bounds box = frame_bounds(tree_.frame, a, b, c, leaf);
       const FrameTriangle t = frame_triangle(tree_.frame, a, b, c, is_empty(box) ? leaf : box, tree_.reach);
       for (size_t k = 0; k < 3; ++k) {
@@ -80,17 +102,16 @@ class FrameWriter {
       field(FrameLeaf::kQ, lane) = static_cast<float>(t.q);
       field(FrameLeaf::kR, lane) = static_cast<float>(t.r);
       field(FrameLeaf::kError, lane) = float_above(t.z_error * (1 + 0x1p-20));
-      field(FrameLeaf::kId, lane) = stored_id(ids_[lane]);
+      field(FrameLeaf::kId, lane) = stored_id(ids[lane]);
       most_error = std::max(most_error, t.z_error);
     }
     const double lo = leaf.lo.z, hi = leaf.hi.z, middle = 0.5 * (lo + hi);
     out[0] = static_cast<float>(middle);
     out[1] = float_above(0.5 * (hi - lo) + 2 * most_error + 0x1p-22 * std::abs(middle));
-    refs_[index] = frame_ref(offset, count);
+    return frame_ref(offset, count);
   }
 
-  void write_node(size_t index) {
-    const WideItem& item = plan_.items()[index];
+  void write_node(const WideItem& item) {
     auto* node = new (tree_.memory.data() + item.offset) FrameNode{};
     std::array<size_t, kFrameWidth> children{};
     for (size_t i = 0; i < item.children; ++i) children[i] = item.first_child + i;
@@ -106,13 +127,12 @@ class FrameWriter {
       }
       if (is_there) node->child[lane] = refs_[child];
     }
-    refs_[index] = frame_ref(item.offset, 0);
   }
 
   const WidePlan& plan_;
   FrameMemory& tree_;
+  const unsigned threads_;
   std::vector<FrameRef> refs_;  // by item
-  std::vector<uint32_t> ids_;
 };
 
 }  // namespace
@@ -129,7 +149,7 @@ FrameMemory write_frame_tree(const RayFrame& frame, const Bvh& tree, std::shared
                       [&](uint32_t triangle) { return bounds_of(frame, triangles.at_id(triangle)); }};
   const WidePlan plan(tree, options, form);
   set_sizes(result, plan.root_bounds());
-  FrameWriter(plan, result).run();
+  FrameWriter(plan, result, options.threads).run();
   return result;
 }
 

@@ -1,14 +1,21 @@
 #include "trace/wide_plan.h"
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <utility>
 
 #include "raygrain/error.h"
 
+#include "base/parallel.h"
 #include "base/sort_few.h"
 
 namespace raygrain {
+
+namespace {
+constexpr size_t kNodesPerTask = 16384, kTrianglesPerPart = 8192;
+}
 
 void validate(const WideOptions& options, size_t width) {
   const auto check = [](bool good, const char* field, const char* range) {
@@ -21,22 +28,26 @@ void validate(const WideOptions& options, size_t width) {
 }
 
 WidePlan::WidePlan(const Bvh& tree, const WideOptions& options, const WideForm& form)
-    : tree_(tree), options_(options), form_(form), node_bytes_(form.node_bytes) {
+    : tree_(tree), options_(options), form_(form) {
   validate(options, form.width);
   copy_binary();
   measure_nodes();
-  costs_ = Buffer<float>(binary_.size() * form_.width + 1);
-  for (size_t i = binary_.size(); i-- > 0;) price(i);
+  price_all();
   plan();
 }
 
 void WidePlan::copy_binary() {
-  binary_.reserve(tree_.nodes.size());
-  bool has_large = false;
-  for (const Bvh::Node& node : tree_.nodes) {
-    binary_.push_back(node.is_leaf() ? Binary{0, node.first, node.count} : Binary{node.first, 0, 0});
-    has_large |= node.count > options_.max_leaf_size;
-  }
+  binary_.resize(tree_.nodes.size());
+  std::atomic<bool> has_large = false;
+  parallel_for(binary_.size(), kNodesPerTask, options_.threads, [&](size_t begin, size_t end) {
+    bool some_are_large = false;
+    for (size_t i = begin; i < end; ++i) {
+      const Bvh::Node& node = tree_.nodes[i];
+      binary_[i] = node.is_leaf() ? Binary{0, node.first, node.count} : Binary{node.first, 0, 0};
+      some_are_large |= node.count > options_.max_leaf_size;
+    }
+    if (some_are_large) has_large = true;
+  });
   if (has_large)
     for (size_t i = 0; i < binary_.size(); ++i) halve_leaf(i);  // the new ones come up in their turn
 }
@@ -54,25 +65,37 @@ void WidePlan::halve_leaf(size_t index) {
   }
 }
 
-/// Some boxes at a time, side by side as measures want them.
 void WidePlan::measure_nodes() {
-  constexpr size_t kAtOnce = 256;
   measures_.resize(binary_.size());
-  std::vector<Bounds> boxes(std::min(kAtOnce, binary_.size()));
+  std::vector<float> greatest((binary_.size() + kNodesPerTask - 1) / kNodesPerTask);
+  parallel_for(binary_.size(), kNodesPerTask, options_.threads,
+               [&](size_t begin, size_t end) { greatest[begin / kNodesPerTask] = measure_some(begin, end); });
+  const float most = *std::max_element(greatest.begin(), greatest.end());
+  const auto bad = [](float measure) { return !(measure >= 0 && std::isfinite(measure)); };
+  if (!std::isfinite(most))
+    throw Error(
+        ErrorCode::kBadHeuristic,
+        "nodes[" + std::to_string(std::find_if(measures_.begin(), measures_.end(), bad) - measures_.begin()) + "]",
+        "the measure is negative or not finite");
+  if (!(most > 0)) return;
+  parallel_for(binary_.size(), kNodesPerTask, options_.threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) measures_[i] /= most;  // sums of costs must stay in range
+  });
+}
+
+/// Some boxes at a time, side by side as measures want them. The greatest; infinity where one is none.
+float WidePlan::measure_some(size_t begin, size_t end) {
+  constexpr size_t kAtOnce = 256;
+  std::array<Bounds, kAtOnce> boxes;
   float greatest = 0;
-  for (size_t begin = 0; begin < measures_.size(); begin += kAtOnce) {
-    const size_t count = std::min(kAtOnce, measures_.size() - begin);
+  for (; begin < end; begin += kAtOnce) {
+    const size_t count = std::min(kAtOnce, end - begin);
     for (size_t k = 0; k < count; ++k) boxes[k] = box(begin + k);
     options_.measure({boxes.data(), count}, {measures_.data() + begin, count});
-    for (size_t i = begin; i < begin + count; ++i) {
-      if (!(measures_[i] >= 0 && std::isfinite(measures_[i])))
-        throw Error(ErrorCode::kBadHeuristic, "nodes[" + std::to_string(i) + "]",
-                    "the measure is negative or not finite");
-      greatest = std::max(greatest, measures_[i]);
-    }
+    for (size_t i = begin; i < begin + count; ++i)
+      greatest = measures_[i] >= 0 ? std::max(greatest, measures_[i]) : kInf;
   }
-  if (greatest > 0)  // sums of costs must stay in range
-    for (float& measure : measures_) measure /= greatest;
+  return greatest;
 }
 
 float WidePlan::node_cost(size_t i) const {
@@ -84,6 +107,30 @@ float WidePlan::leaf_cost(size_t i) const {
 float WidePlan::split_cost(size_t i, size_t places, size_t left_places) const {
   const size_t left = binary_[i].left;
   return costs(left)[left_places] + costs(left + 1)[places - left_places];
+}
+
+/// The subtrees below some upper nodes on all threads, then these nodes.
+void WidePlan::price_all() {
+  constexpr size_t kSubtrees = 256;
+  costs_ = Buffer<float>(binary_.size() * form_.width + 1);
+  std::vector<uint32_t> nodes{0};  // parents before children
+  size_t upper = 0;
+  for (; upper < nodes.size() && nodes.size() - upper < kSubtrees; ++upper)
+    if (const uint32_t left = binary_[nodes[upper]].left; left != 0) nodes.insert(nodes.end(), {left, left + 1});
+  parallel_for(nodes.size() - upper, 1, options_.threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) price_subtree(nodes[upper + i]);
+  });
+  while (upper-- > 0) price(nodes[upper]);
+}
+
+void WidePlan::price_subtree(uint32_t root) {
+  std::vector<uint32_t> below, open{root};
+  while (!open.empty()) {
+    below.push_back(open.back());
+    open.pop_back();
+    if (const uint32_t left = binary_[below.back()].left; left != 0) open.insert(open.end(), {left + 1, left});
+  }
+  for (size_t i = below.size(); i-- > 0;) price(below[i]);
 }
 
 void WidePlan::price(size_t i) {
@@ -128,13 +175,37 @@ void WidePlan::collect_halves(uint32_t i, size_t places, std::vector<uint32_t>& 
   collect(binary_[i].left, left, roots);
   collect(binary_[i].left + 1, places - left, roots);
 }
+
+/// First the upper nodes, then what is below them, part by part.
 void WidePlan::plan() {
-  items_.push_back({.root = 0});
+  all_.items.push_back({.root = 0});
+  all_.node_bytes = form_.node_bytes;
+  std::vector<uint32_t> later;
+  plan_part(all_, &later);
+  std::vector<Part> parts(later.size());
+  parallel_for(parts.size(), 1, options_.threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i) {
+      parts[i].items.reserve(binary_[all_.items[later[i]].root].count / 2);
+      parts[i].items.push_back({.root = all_.items[later[i]].root});
+      plan_part(parts[i], nullptr);
+    }
+  });
+  put_parts(later, parts);
+  if (all_.node_bytes + all_.leaf_bytes > uint64_t{1} << 43)
+    throw Error(ErrorCode::kLimit, "WideBvh", "the tree takes more than 2^43 bytes");
+}
+
+/// From the part's first item down; `later`: gets the items of small subtrees, which are left alone.
+void WidePlan::plan_part(Part& part, std::vector<uint32_t>* later) const {
   std::vector<uint32_t> pending{0}, roots;
   while (!pending.empty()) {  // depth first, so that subtrees stay together
     const uint32_t index = pending.back();
     pending.pop_back();
-    const uint32_t root = items_[index].root;
+    const uint32_t root = part.items[index].root;
+    if (later != nullptr && index != 0 && binary_[root].count <= kTrianglesPerPart) {
+      later->push_back(index);
+      continue;
+    }
     roots.clear();
     if (is_wide_leaf(root))
       roots.push_back(root);  // the whole tree is one leaf: the only child of the root node
@@ -142,30 +213,55 @@ void WidePlan::plan() {
       collect_halves(root, form_.width, roots);
     // The most probable last: any hit takes the last first.
     sort_few(std::span(roots), [&](uint32_t a, uint32_t b) { return measures_[a] < measures_[b]; });
-    plan_children(index, roots, pending);
+    plan_children(part, index, roots, pending);
   }
-  if (node_bytes_ + leaf_bytes_ > uint64_t{1} << 43)
-    throw Error(ErrorCode::kLimit, "WideBvh", "the tree takes more than 2^43 bytes");
 }
 
-void WidePlan::plan_children(uint32_t parent, const std::vector<uint32_t>& roots, std::vector<uint32_t>& pending) {
-  const auto first = static_cast<uint32_t>(items_.size());
-  items_[parent].first_child = first;
-  items_[parent].children = static_cast<uint32_t>(roots.size());
-  ++nodes_;
-  for (const uint32_t root : roots) items_.push_back({.root = root});
+void WidePlan::plan_children(Part& part, uint32_t parent, const std::vector<uint32_t>& roots,
+                             std::vector<uint32_t>& pending) const {
+  const auto first = static_cast<uint32_t>(part.items.size());
+  part.items[parent].first_child = first;
+  part.items[parent].children = static_cast<uint32_t>(roots.size());
+  ++part.nodes;
+  for (const uint32_t root : roots) part.items.push_back({.root = root});
   for (size_t i = roots.size(); i-- > 0;) {
     const auto index = static_cast<uint32_t>(first + i);
     if (is_wide_leaf(roots[i])) {
-      ++leaves_;
-      items_[index].offset = leaf_bytes_;  // from the first leaf
-      leaf_bytes_ += form_.leaf_bytes(binary_[roots[i]].count);
+      ++part.leaves;
+      part.items[index].offset = part.leaf_bytes;  // from the first leaf
+      part.leaf_bytes += form_.leaf_bytes(binary_[roots[i]].count);
     } else {
-      items_[index].offset = node_bytes_;
-      node_bytes_ += form_.node_bytes;
+      part.items[index].offset = part.node_bytes;
+      part.node_bytes += form_.node_bytes;
       pending.push_back(index);
     }
   }
+}
+
+/// Each part goes behind those before it; `roots` are its root's places among all items.
+void WidePlan::put_parts(const std::vector<uint32_t>& roots, const std::vector<Part>& parts) {
+  std::vector<Part> before(parts.size());  // bytes of all before each part
+  std::vector<uint32_t> places(parts.size());
+  size_t size = all_.items.size();
+  for (size_t i = 0; i < parts.size(); ++i) {
+    places[i] = static_cast<uint32_t>(size - 1);  // of its first item, if it had a place there
+    size += parts[i].items.size() - 1;
+    before[i].node_bytes = std::exchange(all_.node_bytes, all_.node_bytes + parts[i].node_bytes);
+    before[i].leaf_bytes = std::exchange(all_.leaf_bytes, all_.leaf_bytes + parts[i].leaf_bytes);
+    all_.nodes += parts[i].nodes;
+    all_.leaves += parts[i].leaves;
+  }
+  all_.items.resize(size);
+  parallel_for(parts.size(), 1, options_.threads, [&](size_t begin, size_t end) {
+    for (size_t i = begin; i < end; ++i)
+      for (size_t k = 0; k < parts[i].items.size(); ++k) {
+        WideItem item = parts[i].items[k];
+        if (!item.is_leaf()) item.first_child += places[i];
+        item.offset += item.is_leaf() ? before[i].leaf_bytes : before[i].node_bytes;
+        if (k == 0) item.offset = all_.items[roots[i]].offset;
+        all_.items[k == 0 ? roots[i] : places[i] + k] = item;
+      }
+  });
 }
 
 void WidePlan::gather(uint32_t i, std::vector<uint32_t>& ids) const {

@@ -41,17 +41,18 @@ struct WideForm {
 /// ray traversal on GPUs through compressed wide BVHs" (2017), section 4.1, under any measure.
 ///
 /// Costs are computed bottom-up, for every node of the binary tree and every number of places in a wide node that its
-/// triangles may take; then a plan is made top-down from the choices that gave these costs.
+/// triangles may take; then a plan is made top-down from the choices that gave these costs. Both run on all threads,
+/// subtree by subtree; the plan is the same for any number of them.
 class WidePlan {
  public:
   /// `tree` is not empty and must outlive the plan. Throws as WideBvh's constructor.
   WidePlan(const Bvh& tree, const WideOptions& options, const WideForm& form);
 
-  std::span<const WideItem> items() const { return items_; }  // children after their parents; the first is the root
-  size_t nodes() const { return nodes_; }
-  size_t leaves() const { return leaves_; }
-  uint64_t node_bytes() const { return node_bytes_; }
-  uint64_t leaf_bytes() const { return leaf_bytes_; }
+  std::span<const WideItem> items() const { return all_.items; }  // children after their parents; the first is the root
+  size_t nodes() const { return all_.nodes; }
+  size_t leaves() const { return all_.leaves; }
+  uint64_t node_bytes() const { return all_.node_bytes; }
+  uint64_t leaf_bytes() const { return all_.leaf_bytes; }
   const Bounds& bounds(const WideItem& item) const { return box(item.root); }
   const Bounds& root_bounds() const { return tree_.nodes[0].bounds; }
   /// Appends the item's primitives.
@@ -66,9 +67,20 @@ class WidePlan {
     bool merged = false;            // an inner node whose triangles are best put into one leaf
   };
 
+  /// A piece of the plan: what becomes of a subtree's triangles. Places count from its own start; the first item is its
+  /// root, whose place is known elsewhere.
+  struct Part {
+    std::vector<WideItem> items;
+    size_t nodes = 0, leaves = 0;
+    uint64_t node_bytes = 0, leaf_bytes = 0;
+  };
+
   void copy_binary();
   void halve_leaf(size_t index);
   void measure_nodes();
+  float measure_some(size_t begin, size_t end);
+  void price_all();
+  void price_subtree(uint32_t root);
   const Bounds& box(size_t i) const {
     return i < tree_.nodes.size() ? tree_.nodes[i].bounds : halves_[i - tree_.nodes.size()];
   }
@@ -84,7 +96,10 @@ class WidePlan {
   void collect_halves(uint32_t i, size_t places, std::vector<uint32_t>& roots) const;
   bool is_wide_leaf(uint32_t i) const { return binary_[i].left == 0 || binary_[i].merged; }
   void plan();
-  void plan_children(uint32_t parent, const std::vector<uint32_t>& roots, std::vector<uint32_t>& pending);
+  void plan_part(Part& part, std::vector<uint32_t>* later) const;
+  void plan_children(Part& part, uint32_t parent, const std::vector<uint32_t>& roots,
+                     std::vector<uint32_t>& pending) const;
+  void put_parts(const std::vector<uint32_t>& roots, const std::vector<Part>& parts);
   void gather(uint32_t i, std::vector<uint32_t>& ids) const;
 
   const Bvh& tree_;
@@ -94,9 +109,7 @@ class WidePlan {
   std::vector<Bounds> halves_;  // of leaves; their boxes
   std::vector<float> measures_;
   Buffer<float> costs_;  // `width` for each node, behind one that is not used
-  std::vector<WideItem> items_;
-  size_t nodes_ = 0, leaves_ = 0;
-  uint64_t node_bytes_ = 0, leaf_bytes_ = 0;
+  Part all_;
 };
 
 }  // namespace raygrain
