@@ -28,7 +28,7 @@ constexpr int kTurns = 20;
 AcceleratorOptions bench_options() {
   AcceleratorOptions options;
   options.quality = Quality::kBalanced;
-  options.space = LocalSpace::kNone;  // as docs/performance.md found it best
+  options.space = LocalSpace::kNone;  // as docs/performance-rays.md found it best
   return options;
 }
 

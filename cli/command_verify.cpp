@@ -80,6 +80,7 @@ std::string verify_json(const Options& options, const VerifyResult& result) {
                     {"lines", t.lines},
                     {"leaks", t.leaks},
                     {"seconds", t.seconds},
+                    {"comparisons_of", t.comparisons_of},
                     {"failures", failures}};
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -83,6 +84,9 @@ struct VerifyTally {
   uint64_t lines = 0;        // lines that touch no edge of closed meshes: each must cross an even number of times
   uint64_t leaks = 0;        // of the last two, those that did not
   double seconds = 0;
+  /// Of the comparisons, those of structures and rays with something in common, e.g. "wide, mixed rays", "isa avx2",
+  /// "measure PAH", "builder spatial", "frame shear_y", "batches"; each comparison is in several.
+  std::map<std::string, uint64_t> comparisons_of;
 
   void add(const VerifyTally& other);
   bool is_good() const { return differences == 0 && leaks == 0; }

@@ -13,7 +13,7 @@ namespace {
 constexpr size_t kSamples = 256;
 
 /// Nanoseconds of a processor of 2023 (AVX-512), trees of 100,000 triangles, found by a fit to single rays of the
-/// scenes in docs/performance.md. Only their relations matter.
+/// scenes in docs/performance-rays.md. Only their relations matter.
 struct TreePrices {
   double start, node, leaf, confirmation;
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "verify/aspects.h"
 #include "verify/oracle.h"
 
 namespace raygrain::verification {
@@ -66,6 +67,7 @@ std::optional<Difference> compare(const RayStructure& structure, const Round& ro
     ++tally.structures;
     for (size_t g = 0; g < round.groups.size(); ++g) {
       const RayGroup& group = round.groups[g];
+      const uint64_t before = tally.comparisons;
       Room room(group.rays.size());
       answer(group, room.answers());
       for (size_t i = 0; i < group.rays.size(); ++i) {
@@ -76,6 +78,8 @@ std::optional<Difference> compare(const RayStructure& structure, const Round& ro
         if (!is_really_wrong(round, room, g, i)) what.insert(0, "the tree of reference is wrong: ");
         note({what, g, i});
       }
+      for (const std::string& aspect : aspects_of(structure.name, group.kind))
+        tally.comparisons_of[aspect] += tally.comparisons - before;
     }
   } catch (const std::exception& error) {
     note({std::string("threw: ") + error.what(), 0, 0, true});

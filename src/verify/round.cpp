@@ -113,6 +113,18 @@ class RayMaker {
     add(std::move(group));
   }
 
+  /// Along an area's light, against it, and near it: a coverage or a tree in ray space answers few others.
+  void add_of_area(const InfluenceArea& area, size_t count) {
+    if (const auto* point = std::get_if<PointArea>(&area.shape)) {
+      add_eye(point->eye, count / 3);
+    } else {
+      const Vec3 direction = std::get<PlaneArea>(area.shape).direction;
+      add_direction(-direction, count / 3);
+      add_direction(direction, count / 3);
+    }
+    add({RayGroupKind::kMixed, {}, rays_of_areas(mesh_, {area}, count / 3, random_.next())});
+  }
+
   /// Of every area some, of either sense.
   void add_shared(size_t count) {
     const auto& areas = round_.scene.areas;
@@ -164,8 +176,13 @@ void add_covering_areas(VerifyScene& scene, Random& random) {
 void draw_structures(Round& round, const VerifyOptions& options, Random& random) {
   if (options.structures_per_scene > 0)
     round.structures.push_back("exact seed=" + std::to_string(random.below(100'000)));
-  for (uint32_t i = 0; i < options.structures_per_scene; ++i)
-    round.structures.push_back(random_structure(random.next()).name);
+  for (uint32_t i = 0; i < options.structures_per_scene; ++i) {
+    StructureSpec spec = parse_spec(random_structure(random.next()).name);
+    // Coverages of areas that do not cover the scene answer little; those that do are the last.
+    if (spec.kind == "coverage" && !round.scene.areas.empty() && random.below(4))
+      spec.area = static_cast<uint32_t>(round.scene.areas.size() - 1 - random.below(2) % round.scene.areas.size());
+    round.structures.push_back(to_text(spec));
+  }
 }
 
 /// Its own rays: all of lists, others drawn anew each time.
@@ -234,8 +251,13 @@ Round make_round(const VerifyOptions& options, uint64_t number) {
   const size_t count = rays_for(options.tests_per_scene, triangles, round.is_brute_force, round.scene.name);
   RayMaker maker(round, random.next(), round.is_brute_force);
   if (chosen.file != nullptr) add_own_rays(maker, *chosen.file, chosen.visit, 20'000);
-  maker.add_mixed(count * 6 / 10);
-  maker.add_shared(count * 35 / 100);
+  maker.add_mixed(count * 5 / 10);
+  maker.add_shared(count * 25 / 100);
+  for (const std::string& name : round.structures) {
+    const StructureSpec spec = parse_spec(name);
+    const InfluenceArea* area = area_of(spec, round.scene);
+    if (area != nullptr && (spec.kind == "coverage" || spec.kind == "frame")) maker.add_of_area(*area, count / 4);
+  }
   if (round.closed) maker.add_inside(inside, count * 5 / 100);
   return round;
 }

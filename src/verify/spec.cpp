@@ -125,7 +125,7 @@ StructureSpec random_spec(Random& random) {
   const std::vector<Isa> isas = supported_isas();
   StructureSpec spec;
   const uint64_t kind = random.below(20);
-  spec.kind = kind < 2 ? "binary" : kind < 9 ? "wide" : kind < 12 ? "frame" : kind < 14 ? "coverage" : "accelerator";
+  spec.kind = kind < 2 ? "binary" : kind < 8 ? "wide" : kind < 11 ? "frame" : kind < 14 ? "coverage" : "accelerator";
   spec.seed = random.below(1'000'000);
   spec.area = static_cast<uint32_t>(random.below(16));
   if (spec.kind != "binary") spec.isa = name(isas[random.below(isas.size())]);

@@ -140,6 +140,7 @@ void VerifyTally::add(const VerifyTally& other) {
   inside_rays += other.inside_rays;
   lines += other.lines;
   leaks += other.leaks;
+  for (const auto& [aspect, count] : other.comparisons_of) comparisons_of[aspect] += count;
   seconds += other.seconds;
 }
 

@@ -32,11 +32,11 @@ struct Block {
   Vec3 points[kBlock + 16];
 };
 
-using FloatTag = hn::CappedTag<float, 8>;
-using Floats = hn::Vec<FloatTag>;
+using ColumnTag = hn::CappedTag<float, 8>;
+using ColumnFloats = hn::Vec<ColumnTag>;
 
-HWY_INLINE Floats turn(const CoverageGrid& grid, size_t row, Floats x, Floats y, Floats z) {
-  const FloatTag d;
+HWY_INLINE ColumnFloats turn(const CoverageGrid& grid, size_t row, ColumnFloats x, ColumnFloats y, ColumnFloats z) {
+  const ColumnTag d;
   const Vec3 r = grid.map.float_rows[row];
   return hn::MulAdd(hn::Set(d, r.x), x, hn::MulAdd(hn::Set(d, r.y), y, hn::Mul(hn::Set(d, r.z), z)));
 }
@@ -57,21 +57,22 @@ HWY_INLINE void load(const ColumnBatch& batch, size_t begin, size_t count, Block
 
 /// Finds the tiles of the block's first `count` rays.
 HWY_INLINE void place(const CoverageGrid& grid, ColumnRays::Kind kind, size_t count, Block& block) {
-  const FloatTag d;
-  const hn::RebindToSigned<FloatTag> di;
+  const ColumnTag d;
+  const hn::RebindToSigned<ColumnTag> di;
   const bool are_directions = kind == ColumnRays::Kind::kFrom;
   const Vec3 center = are_directions ? Vec3{} : grid.map.center;
-  const Floats x_lo = hn::Set(d, grid.x_lo), y_lo = hn::Set(d, grid.y_lo), scale = hn::Set(d, grid.tiles_per_unit);
+  const ColumnFloats x_lo = hn::Set(d, grid.x_lo), y_lo = hn::Set(d, grid.y_lo),
+                     scale = hn::Set(d, grid.tiles_per_unit);
   const auto last_x = hn::Set(di, static_cast<int32_t>(grid.tiles_x) - 1);
   const auto last_y = hn::Set(di, static_cast<int32_t>(grid.tiles_y) - 1);
   const auto zero = hn::Zero(di);
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {
-    Floats px, py, pz;
+    ColumnFloats px, py, pz;
     hn::LoadInterleaved3(d, &block.points[i].x, px, py, pz);
     px = hn::Sub(px, hn::Set(d, center.x));
     py = hn::Sub(py, hn::Set(d, center.y));
     pz = hn::Sub(pz, hn::Set(d, center.z));
-    Floats x = turn(grid, 0, px, py, pz), y = turn(grid, 1, px, py, pz), s = turn(grid, 2, px, py, pz);
+    ColumnFloats x = turn(grid, 0, px, py, pz), y = turn(grid, 1, px, py, pz), s = turn(grid, 2, px, py, pz);
     auto inside = hn::And(hn::Ge(s, hn::Set(d, 0x1p-60f)), hn::Le(s, hn::Set(d, 0x1p60f)));  // of an eye
     if (grid.map.is_eye) {
       s = hn::Div(hn::Set(d, 1.0f), s);
@@ -79,12 +80,12 @@ HWY_INLINE void place(const CoverageGrid& grid, ColumnRays::Kind kind, size_t co
       y = hn::Mul(y, s);
     }
     if (!are_directions) inside = hn::And(hn::Ge(s, hn::Set(d, grid.s_lo)), hn::Le(s, hn::Set(d, grid.s_hi)));
-    const Floats huge = hn::Set(d, 0x1p60f);
+    const ColumnFloats huge = hn::Set(d, 0x1p60f);
     const auto beside = hn::And(hn::And(inside, hn::Le(hn::Abs(x), huge)), hn::Le(hn::Abs(y), huge));
     inside = hn::And(inside, hn::And(hn::Ge(x, x_lo), hn::Le(x, hn::Set(d, grid.x_hi))));
     inside = hn::And(inside, hn::And(hn::Ge(y, y_lo), hn::Le(y, hn::Set(d, grid.y_hi))));
-    const Floats gx = hn::IfThenElseZero(inside, hn::Mul(hn::Sub(x, x_lo), scale));
-    const Floats gy = hn::IfThenElseZero(inside, hn::Mul(hn::Sub(y, y_lo), scale));
+    const ColumnFloats gx = hn::IfThenElseZero(inside, hn::Mul(hn::Sub(x, x_lo), scale));
+    const ColumnFloats gy = hn::IfThenElseZero(inside, hn::Mul(hn::Sub(y, y_lo), scale));
     const auto tx = hn::Max(zero, hn::Min(hn::ConvertTo(di, gx), last_x));
     const auto ty = hn::Max(zero, hn::Min(hn::ConvertTo(di, gy), last_y));
     const auto tile = hn::Add(hn::Mul(ty, hn::Set(di, static_cast<int32_t>(grid.tiles_x))), tx);
@@ -96,25 +97,26 @@ HWY_INLINE void place(const CoverageGrid& grid, ColumnRays::Kind kind, size_t co
     auto marked = hn::IfThenElse(hn::RebindMask(di, inside), tile, hn::Set(di, -1));
     if (grid.is_free_beside)
       marked = hn::IfThenElse(hn::RebindMask(di, hn::AndNot(inside, beside)), hn::Set(di, -2), marked);
-    hn::Store(hn::BitCast(hn::RebindToUnsigned<FloatTag>(), marked), hn::RebindToUnsigned<FloatTag>(), block.tile + i);
+    hn::Store(hn::BitCast(hn::RebindToUnsigned<ColumnTag>(), marked), hn::RebindToUnsigned<ColumnTag>(),
+              block.tile + i);
   }
 }
 
 /// The first grid whose window holds each of up to kBlock points of a block.
 HWY_INLINE void choose_grids(const EyeGrids& eye, bool are_directions, size_t count, const Block& block,
                              uint8_t* chosen) {
-  const FloatTag d;
+  const ColumnTag d;
   const Vec3 center = are_directions ? Vec3{} : eye.grids[0]->map.center;
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {
-    Floats px, py, pz;
+    ColumnFloats px, py, pz;
     hn::LoadInterleaved3(d, &block.points[i].x, px, py, pz);
     px = hn::Sub(px, hn::Set(d, center.x));
     py = hn::Sub(py, hn::Set(d, center.y));
     pz = hn::Sub(pz, hn::Set(d, center.z));
-    Floats best = hn::Set(d, static_cast<float>(kNoGrid));
+    ColumnFloats best = hn::Set(d, static_cast<float>(kNoGrid));
     for (uint32_t g = eye.count; g-- > 0;) {
       const CoverageGrid& grid = *eye.grids[g];
-      const Floats x = turn(grid, 0, px, py, pz), y = turn(grid, 1, px, py, pz), z = turn(grid, 2, px, py, pz);
+      const ColumnFloats x = turn(grid, 0, px, py, pz), y = turn(grid, 1, px, py, pz), z = turn(grid, 2, px, py, pz);
       const auto in_x =
           hn::And(hn::Ge(x, hn::Mul(hn::Set(d, grid.x_lo), z)), hn::Le(x, hn::Mul(hn::Set(d, grid.x_hi), z)));
       const auto in_y =
@@ -122,7 +124,7 @@ HWY_INLINE void choose_grids(const EyeGrids& eye, bool are_directions, size_t co
       const auto inside = hn::And(hn::And(in_x, in_y), hn::Gt(z, hn::Zero(d)));
       best = hn::IfThenElse(inside, hn::Set(d, static_cast<float>(g)), best);
     }
-    alignas(64) float numbers[hn::MaxLanes(FloatTag())];
+    alignas(64) float numbers[hn::MaxLanes(ColumnTag())];
     hn::Store(best, d, numbers);
     for (size_t lane = 0; lane < std::min(hn::Lanes(d), count - i); ++lane)
       chosen[i + lane] = static_cast<uint8_t>(numbers[lane]);
