@@ -18,39 +18,10 @@ namespace raygrain {
 namespace {
 
 using test::add_floor;
-using test::add_triangle;
+using test::error_of;
+using test::random_mesh;
+using test::some_areas;
 using test::z_area;
-
-TriangleMesh random_mesh(size_t count, uint64_t seed) {
-  Random random(seed);
-  const auto vector = [&](double half_size) {
-    const double x = random.uniform(-half_size, half_size), y = random.uniform(-half_size, half_size);
-    return Vec3d{x, y, random.uniform(-half_size, half_size)};
-  };
-  TriangleMesh mesh;
-  for (size_t i = 0; i < count; ++i) {
-    const Vec3d a = vector(2);
-    add_triangle(mesh, to_float(a), to_float(a + vector(0.5)), to_float(a + vector(0.5)));
-  }
-  return mesh;
-}
-
-std::vector<InfluenceArea> some_areas() {
-  return {z_area("sun", -1, 2),
-          {"lamp", PointArea{{0.5f, 3, 0.25f}, {0, -1, 0}, {0, 1, 0}, 90, 60, 0.2f, 6}},
-          {"corner", PlaneArea{{2, 2, 2}, {-1, -1, -1}, {0, 0, 1}, 0.7f, 0.7f, 3}}};
-}
-
-template <class Action>
-Error error_of(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error;
-  }
-  ADD_FAILURE() << "no error";
-  return Error(ErrorCode::kCancelled, "", "");
-}
 
 bool same_tree(const Bvh& a, const Bvh& b) {
   return a.prims == b.prims && std::ranges::equal(a.nodes, b.nodes, [](const Bvh::Node& x, const Bvh::Node& y) {
@@ -295,47 +266,6 @@ TEST(Accelerator, SampleRaysReachTheirMeasures) {
   for (const LocalTree& local : scene.local_trees()) EXPECT_GT(local.predicted_cost, 0);
   for (const Ray& ray : cast_rays(AreaRays{some_areas()[1]}, 200, 2))
     ASSERT_EQ(scene.intersect(ray), intersect_reference(scene.mesh(), ray));
-}
-
-TEST(Accelerator, ErrorsNameTheAreaAndThePart) {
-  const TriangleMesh mesh = random_mesh(20, 9);
-  std::vector<InfluenceArea> areas = some_areas();
-  std::get<PointArea>(areas[1].shape).near_z = 7;
-  Error error = error_of([&] { Accelerator(mesh, areas); });
-  EXPECT_EQ(error.code, ErrorCode::kBadArea);
-  EXPECT_NE(std::string(error.what()).find("areas[1] 'lamp'"), std::string::npos) << error.what();
-
-  TriangleMesh bad = mesh;
-  bad.triangles[3][1] = 1000;
-  EXPECT_EQ(error_of([&] { Accelerator(bad, some_areas()); }).code, ErrorCode::kBadMesh);
-
-  AcceleratorOptions options;
-  options.local.measure = "PHA";
-  EXPECT_EQ(error_of([&] { Accelerator(mesh, some_areas(), options); }).code, ErrorCode::kUsage);
-  options = {};
-  options.top_level.max_level = 30;
-  EXPECT_EQ(error_of([&] { Accelerator(mesh, some_areas(), options); }).code, ErrorCode::kUsage);
-}
-
-TEST(Accelerator, RefusesPartsThatDoNotFit) {
-  const auto mesh = std::make_shared<const TriangleMesh>(random_mesh(20, 10));
-  const Registry registry = default_registry();
-  const auto global = std::make_shared<const Bvh>(build_global_tree(*mesh, {"SAH", "ALL", "binned", {}}, registry));
-  const LocalTree local = build_local_tree(*mesh, z_area("sun", -2, 4), {"PAH", "ALL", "binned", {}}, registry);
-
-  EXPECT_EQ(error_of([&] { Accelerator(nullptr, {local}, global); }).code, ErrorCode::kUsage);
-  EXPECT_EQ(error_of([&] { Accelerator(mesh, {local}, nullptr); }).where, "global tree");
-  LocalTree no_tree = local;
-  no_tree.tree = nullptr;
-  EXPECT_EQ(error_of([&] { Accelerator(mesh, {local, no_tree}, global); }).where, "areas[1] 'sun'");
-
-  Bvh wrong = *local.tree;
-  wrong.prims[0] = 20;  // no such triangle
-  LocalTree bad = local;
-  bad.tree = std::make_shared<const Bvh>(wrong);
-  EXPECT_EQ(error_of([&] { Accelerator(mesh, {bad}, global); }).where, "areas[0] 'sun'");
-  // A global tree must hold every triangle.
-  EXPECT_EQ(error_of([&] { Accelerator(mesh, {local}, local.tree); }).where, "global tree");
 }
 
 }  // namespace

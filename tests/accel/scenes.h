@@ -4,7 +4,12 @@
 #include <string>
 #include <vector>
 
+#include <gtest/gtest.h>
+
 #include "raygrain/accelerator.h"
+#include "raygrain/error.h"
+
+#include "base/random.h"
 
 namespace raygrain::test {
 
@@ -52,6 +57,37 @@ inline std::vector<Vec3> border_points(const ConvexRegion& region) {
     points.push_back(to_float(point));
   }
   return points;
+}
+
+inline TriangleMesh random_mesh(size_t count, uint64_t seed) {
+  Random random(seed);
+  const auto vector = [&](double half_size) {
+    const double x = random.uniform(-half_size, half_size), y = random.uniform(-half_size, half_size);
+    return Vec3d{x, y, random.uniform(-half_size, half_size)};
+  };
+  TriangleMesh mesh;
+  for (size_t i = 0; i < count; ++i) {
+    const Vec3d a = vector(2);
+    add_triangle(mesh, to_float(a), to_float(a + vector(0.5)), to_float(a + vector(0.5)));
+  }
+  return mesh;
+}
+
+inline std::vector<InfluenceArea> some_areas() {
+  return {z_area("sun", -1, 2),
+          {"lamp", PointArea{{0.5f, 3, 0.25f}, {0, -1, 0}, {0, 1, 0}, 90, 60, 0.2f, 6}},
+          {"corner", PlaneArea{{2, 2, 2}, {-1, -1, -1}, {0, 0, 1}, 0.7f, 0.7f, 3}}};
+}
+
+template <class Action>
+Error error_of(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error;
+  }
+  ADD_FAILURE() << "no error";
+  return Error(ErrorCode::kCancelled, "", "");
 }
 
 }  // namespace raygrain::test

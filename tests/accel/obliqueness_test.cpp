@@ -1,0 +1,97 @@
+// Scene and rays turned together: ray space does not notice.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <iostream>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include "raygrain/frame_tree.h"
+#include "raygrain/rays.h"
+#include "raygrain/wide.h"
+
+#include "base/random.h"
+
+namespace raygrain {
+namespace {
+
+bool identical(const Hit& a, const Hit& b) {
+  using Bits = std::array<uint32_t, 4>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+}
+
+/// A floor of boxes with axis-parallel faces.
+TriangleMesh town(uint64_t seed) {
+  Random random(seed);
+  TriangleMesh mesh;
+  const auto quad = [&](Vec3 a, Vec3 b, Vec3 c, Vec3 d) {
+    const auto first = static_cast<uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), {a, b, c, d});
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    mesh.triangles.push_back({first, first + 2, first + 3});
+  };
+  for (int i = 0; i < 20; ++i)
+    for (int k = 0; k < 20; ++k) {
+      const auto x = static_cast<float>(i), z = static_cast<float>(k);
+      quad({x, 0, z}, {x + 1, 0, z}, {x + 1, 0, z + 1}, {x, 0, z + 1});
+      const Bounds b{{x + 0.2f, 0, z + 0.2f},
+                     {x + static_cast<float>(random.uniform(0.4, 0.9)), static_cast<float>(random.uniform(0.3, 3)),
+                      z + static_cast<float>(random.uniform(0.4, 0.9))}};
+      quad(corner(b, 2), corner(b, 3), corner(b, 7), corner(b, 6));
+      quad(corner(b, 0), corner(b, 1), corner(b, 3), corner(b, 2));
+      quad(corner(b, 4), corner(b, 5), corner(b, 7), corner(b, 6));
+      quad(corner(b, 0), corner(b, 4), corner(b, 6), corner(b, 2));
+      quad(corner(b, 1), corner(b, 5), corner(b, 7), corner(b, 3));
+    }
+  return mesh;
+}
+
+double pruned_cost(const TraceCounters& c) {
+  return 2 * static_cast<double>(c.inner_hits) + 1.2 * static_cast<double>(c.leaf_triangles);
+}
+
+// Scene and rays turned together: ray space does not notice, the world's axes do.
+TEST(FrameTree, ObliquenessCostsNothing) {
+  const TriangleMesh scene = town(5);
+  const Vec3d sun = normalized(Vec3d{0.3, -1, 0.45}), up{0, 0, 1};
+  std::vector<Vec3d> starts;
+  Random random(9);
+  for (int i = 0; i < 2000; ++i) starts.push_back({random.uniform(0, 20), 3.5, random.uniform(0, 20)});
+  std::vector<double> in_ray_space, in_world;
+  for (int turn = 0; turn < 20; ++turn) {
+    const Frame axes = turn == 0 ? Frame{}
+                                 : make_frame({}, {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)},
+                                              {random.uniform(-1, 1), 0.3, 1});
+    TriangleMesh mesh = scene;
+    for (Vec3& vertex : mesh.vertices) vertex = to_float(to_world_direction(axes, to_double(vertex)));
+    const Vec3 direction = to_float(to_world_direction(axes, sun));
+    InfluenceArea area = directional_light_area("sun", direction, mesh_bounds(mesh));
+    std::get<PlaneArea>(area.shape).up = to_float(to_world_direction(axes, up));
+    const AreaGeometry geometry(area);
+    RayFrame frame = *area_frame(FrameKind::kRotation, geometry);
+    frame.domain = {{-kInf, -kInf, -kInf}, {kInf, kInf, kInf}};
+    std::vector<uint32_t> ids(mesh.triangle_count());
+    std::iota(ids.begin(), ids.end(), 0u);
+    const auto tree = build_frame_tree(frame, std::make_shared<const TriangleCorners>(mesh), ids);
+    const WideBvh wide(build_binned(triangle_bounds(mesh), triangle_centroids(mesh), {}), mesh);
+    TraceCounters ours, worlds;
+    for (const Vec3d start : starts) {
+      const Ray ray{to_float(to_world_direction(axes, start)), direction};
+      ASSERT_TRUE(identical(*tree->intersect_counted(ray, ours), wide.intersect_counted(ray, worlds)));
+    }
+    in_ray_space.push_back(pruned_cost(ours));
+    in_world.push_back(pruned_cost(worlds));
+  }
+  const auto spread = [](const std::vector<double>& costs) {
+    const auto [least, most] = std::ranges::minmax(costs);
+    return most / least;
+  };
+  std::cout << "turned 20 times: pruned cost varies by a factor of " << spread(in_ray_space) << " in ray space, "
+            << spread(in_world) << " in the world's axes\n";
+  EXPECT_LE(spread(in_ray_space), 1.05);
+  EXPECT_GE(spread(in_world), 1.1);
+}
+
+}  // namespace
+}  // namespace raygrain
