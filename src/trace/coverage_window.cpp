@@ -92,7 +92,7 @@ double set_eye_window(CoverageGrid& grid, const AreaGeometry& area) {
   e.place = (16 * slant * (1 + size) + 16 * size) * kRoundoff;
   e.drift = 1.25 * kMostOffset * slant * (1 + size) * farthest;
   e.end = 4 * kMostOffset * slant * farthest;
-  e.evaluation = 16 * (1 + size) * kRoundoff;
+  e.evaluation = (16 + 24 * size) * kRoundoff;
   e.relative_depth = 32 * slant * kRoundoff;
   grid.x_lo = static_cast<float>(-half.x), grid.x_hi = static_cast<float>(half.x);
   grid.y_lo = static_cast<float>(-half.y), grid.y_hi = static_cast<float>(half.y);
