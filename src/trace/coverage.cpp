@@ -30,7 +30,7 @@ namespace {
 constexpr size_t kRaysPerTile = 4;
 /// ... and the grid does not fit the caches anyway.
 constexpr size_t kSmallGrid = size_t{1} << 20;
-constexpr size_t kMostRaysPerTask = size_t{1} << 16;  // so many fit a cache with their answers
+constexpr size_t kMostRaysPerTask = size_t{1} << 17;  // so many fit a cache with their answers
 constexpr size_t kLeastRaysPerTask = 4096;
 
 size_t bytes_of(const CoverageGrid& grid) {
@@ -113,7 +113,8 @@ void in_parts(const CoverageGrid& grid, std::optional<bool> sorts, const ColumnR
                counters != nullptr ? *counters : unwanted);
   }
   const unsigned workers = threads == 0 ? default_threads() : threads;
-  const size_t grain = std::clamp((count + workers - 1) / workers, kLeastRaysPerTask, kMostRaysPerTask);
+  const size_t turns = (count + workers * kMostRaysPerTask - 1) / (workers * kMostRaysPerTask);
+  const size_t grain = std::max((count + workers * turns - 1) / (workers * turns), kLeastRaysPerTask);
   const size_t parts = (count + grain - 1) / grain;
   std::vector<std::vector<uint32_t>> rests(parts);
   std::vector<CoverageCounters> counts(parts);
