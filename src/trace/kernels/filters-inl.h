@@ -77,9 +77,7 @@ struct BoxFilter {
   }
 
  private:
-  static float relative(float x, float center) {
-    return x - center;
-  }
+  static float relative(float x, float center) { return x - center; }
 };
 
 /// Bits of triangles that the ray may hit, bits of those that it surely hits, and where.

@@ -6,6 +6,9 @@
 #define HWY_TARGET_INCLUDE "trace/kernels/kernels.cpp"
 #include <hwy/foreach_target.h>
 // The one above must come first.
+#include <algorithm>
+#include <cmath>
+
 #include <hwy/highway.h>
 
 #include "trace/kernels/any_stream-inl.h"
@@ -36,8 +39,23 @@ bool any_counted(const WideTree& tree, const Ray& ray, const SearchOptions& opti
                        : any<true, false>(tree, ray, options.skip_before, &counters);
 }
 
+/// Do neighbours in the list go almost the same way? Their branches are easy to predict then, and a ray alone does less
+/// work than one in a stream. From a few of them.
+bool are_in_order(const WideTree& tree, const Ray* rays, size_t count) {
+  constexpr size_t kPairs = 8;
+  constexpr float kNear = 0x1p-6f;
+  if (count < 2 * kPairs) return false;
+  const auto largest = [](Vec3 a) { return std::max(std::max(std::abs(a.x), std::abs(a.y)), std::abs(a.z)); };
+  for (size_t i = 0; i < kPairs; ++i) {
+    const Ray* ray = rays + (count - 1) / kPairs * i;
+    if (!(largest(ray[1].direction - ray->direction) <= kNear * largest(ray->direction))) return false;
+    if (!(largest(ray[1].origin - ray->origin) <= kNear * tree.reach)) return false;
+  }
+  return true;
+}
+
 void nearest_of_many(const WideTree& tree, const Ray* rays, Hit* hits, size_t count) {
-  if constexpr (kHasStreams) return NearestStream(tree, rays, hits, count).run();
+  if (kHasStreams && !are_in_order(tree, rays, count)) return NearestStream(tree, rays, hits, count).run();
   for (size_t i = 0; i < count; ++i) hits[i] = nearest<false, true>(tree, rays[i], {}, -kInf, nullptr);
 }
 

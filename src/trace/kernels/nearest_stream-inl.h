@@ -128,7 +128,7 @@ class NearestStream {
     const Popped popped = pop(s.stack, s.bound);
     const auto enter = hn::Load(Tag(), entry);
     const uint32_t lane = nearest_of(enter, bits), others = bits & ~(1u << lane);
-    hn::StoreU(hn::Compress(enter, mask_of(others)), Tag(), s.stack.entry + s.stack.size);
+    store_entries(s.stack, enter, others);
     store_children(s.stack, node, others);
     const size_t size = s.stack.size + static_cast<size_t>(std::popcount(others));
     s.current = choose(bits != 0, node.child[lane], popped.child);

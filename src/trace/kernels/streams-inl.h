@@ -1,7 +1,7 @@
 // Searches for many rays at once: several are in flight, and in each round each takes a step, so that one ray's waits
 // for memory and for long chains of instructions are filled with the others' work. Steps have no branches that are hard
 // to predict: what would be skipped is computed and not used. Every ray finds what it finds alone. Needs vectors of
-// eight child references (kHasStreams). Included once per instruction set.
+// eight floats (kHasStreams). Included once per instruction set.
 #if defined(RAYGRAIN_TRACE_KERNELS_STREAMS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RAYGRAIN_TRACE_KERNELS_STREAMS_INL_H
 #undef RAYGRAIN_TRACE_KERNELS_STREAMS_INL_H
@@ -19,7 +19,7 @@ namespace raygrain::HWY_NAMESPACE {
 namespace {
 
 using KeyTag = hn::RebindToUnsigned<Tag>;
-constexpr bool kHasStreams = HWY_TARGET == HWY_AVX3;
+constexpr bool kHasStreams = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2;
 
 /// Rays in flight: enough to fill the waits, few enough to stay in the first cache.
 constexpr size_t kSlots = 16;
@@ -56,6 +56,18 @@ HWY_INLINE float least_of(const float* values, uint32_t bits) {
   return hn::GetLane(hn::MinOfLanes(tag, hn::IfThenElse(mask_of(bits), hn::Load(tag, values), hn::Set(tag, kInf))));
 }
 
+/// For every set of lanes its lanes, the lowest first, and then any.
+struct LaneLists {
+  uint8_t of[256][kWidth] = {};
+
+  constexpr LaneLists() {
+    for (uint32_t bits = 0; bits < 256; ++bits)
+      for (uint32_t lane = 0, count = 0; lane < kWidth; ++lane)
+        if ((bits >> lane & 1) != 0) of[bits][count++] = static_cast<uint8_t>(lane);
+  }
+};
+constexpr LaneLists kLaneLists;
+
 /// Puts the children in `bits` on the stack, the last lane on top, without making it larger.
 HWY_INLINE void store_children(StreamStack& stack, const WideNode& node, uint32_t bits) {
 #if HWY_TARGET == HWY_AVX3
@@ -65,8 +77,21 @@ HWY_INLINE void store_children(StreamStack& stack, const WideNode& node, uint32_
   const auto children = hn::TableLookupLanes(hn::Load(refs, node.child), hn::IndicesFromVec(refs, lanes));
   hn::StoreU(children, refs, stack.child + stack.size);
 #else
-  static_cast<void>(stack), static_cast<void>(node), static_cast<void>(bits);
+  ChildRef* const top = stack.child + stack.size;
+  for (size_t i = 0; i < kWidth; ++i) top[i] = node.child[kLaneLists.of[bits][i]];
 #endif
+}
+
+/// The same with where they begin.
+HWY_INLINE void store_entries(StreamStack& stack, hn::Vec<Tag> enter, uint32_t bits) {
+#if HWY_TARGET == HWY_AVX3
+  const auto chosen = hn::Compress(enter, mask_of(bits));
+#else  // Compress would copy its tables on the stack each time
+  const hn::Rebind<uint8_t, Tag> bytes;
+  const auto lanes = hn::PromoteTo(KeyTag(), hn::LoadU(bytes, kLaneLists.of[bits]));
+  const auto chosen = hn::TableLookupLanes(enter, hn::IndicesFromVec(Tag(), lanes));
+#endif
+  hn::StoreU(chosen, Tag(), stack.entry + stack.size);
 }
 
 /// One of two numbers without a branch.
