@@ -15,6 +15,7 @@
 #include "raygrain/triangle.h"
 
 #include "base/check.h"
+#include "trace/kernels/compress-inl.h"
 #include "trace/kernels/frame_filters-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -72,7 +73,7 @@ struct FrameStack {
     const FrameRefTag tag;
     const auto children = hn::Load(tag, node.child + at);
     const auto bits = hn::RebindMask(tag, mask);
-    hn::StoreU(hn::Compress(children, bits), tag, refs + size);
+    hn::StoreU(compressed(tag, children, bits), tag, refs + size);
     size += hn::CountTrue(tag, bits);
   }
 };
@@ -85,7 +86,7 @@ struct OrderedStack : FrameStack {
   HWY_INLINE void push(const FrameNode& node, size_t at, Mask mask) {
     const FrameTag tag;
     const float* sides = (kAscending ? node.lower[2] : node.upper[2]) + at;
-    hn::StoreU(hn::Compress(hn::Load(tag, sides), mask), tag, depths + size);
+    hn::StoreU(compressed(tag, hn::Load(tag, sides), mask), tag, depths + size);
     FrameStack::push(node, at, mask);
   }
   /// Rays that run against the order of the node.

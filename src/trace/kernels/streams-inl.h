@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "trace/kernels/compress-inl.h"
 #include "trace/kernels/searches-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -56,18 +57,6 @@ HWY_INLINE float least_of(const float* values, uint32_t bits) {
   return hn::GetLane(hn::MinOfLanes(tag, hn::IfThenElse(mask_of(bits), hn::Load(tag, values), hn::Set(tag, kInf))));
 }
 
-/// For every set of lanes its lanes, the lowest first, and then any.
-struct LaneLists {
-  uint8_t of[256][kWidth] = {};
-
-  constexpr LaneLists() {
-    for (uint32_t bits = 0; bits < 256; ++bits)
-      for (uint32_t lane = 0, count = 0; lane < kWidth; ++lane)
-        if ((bits >> lane & 1) != 0) of[bits][count++] = static_cast<uint8_t>(lane);
-  }
-};
-constexpr LaneLists kLaneLists;
-
 /// Puts the children in `bits` on the stack, the last lane on top, without making it larger.
 HWY_INLINE void store_children(StreamStack& stack, const WideNode& node, uint32_t bits) {
 #if HWY_TARGET == HWY_AVX3
@@ -84,14 +73,7 @@ HWY_INLINE void store_children(StreamStack& stack, const WideNode& node, uint32_
 
 /// The same with where they begin.
 HWY_INLINE void store_entries(StreamStack& stack, hn::Vec<Tag> enter, uint32_t bits) {
-#if HWY_TARGET == HWY_AVX3
-  const auto chosen = hn::Compress(enter, mask_of(bits));
-#else  // Compress would copy its tables on the stack each time
-  const hn::Rebind<uint8_t, Tag> bytes;
-  const auto lanes = hn::PromoteTo(KeyTag(), hn::LoadU(bytes, kLaneLists.of[bits]));
-  const auto chosen = hn::TableLookupLanes(enter, hn::IndicesFromVec(Tag(), lanes));
-#endif
-  hn::StoreU(chosen, Tag(), stack.entry + stack.size);
+  hn::StoreU(compressed(Tag(), enter, mask_of(bits)), Tag(), stack.entry + stack.size);
 }
 
 /// One of two numbers without a branch.
