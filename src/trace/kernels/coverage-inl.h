@@ -109,9 +109,11 @@ HWY_INLINE size_t ask_cells(const CoverageGrid& grid, ColumnRays::Kind kind, siz
       continue;
     }
     question.start(number);
-    if (question.decide(*cell, code, number)) continue;
-    asking.few[size++] = {block.x[i], block.y[i], block.s[i], cell->first, cell[1].first - cell->first, number,
-                          tile,       code,       0};
+    const bool is_told = question.decide(*cell, code, number);
+    if (Question::kJumps && is_told) continue;
+    asking.few[size] = {block.x[i], block.y[i], block.s[i], cell->first, cell[1].first - cell->first, number,
+                        tile,       code,       0};
+    size += is_told ? 0 : 1;
   }
   return size;
 }

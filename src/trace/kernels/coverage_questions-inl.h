@@ -64,19 +64,19 @@ struct AnyHit {
   const ColumnBatch& batch;
   uint8_t* flags;
   CoverageCounters& counters;
+  bool has_no_near = grid.near_triangles.empty();
 
   /// True if the cell tells the answer.
   HWY_INLINE bool decide(const CoverageCell& cell, uint16_t code, uint32_t number) const {
     const bool is_hidden = code < cell.cover;
-    if (is_hidden || (code > cell.far && grid.near_triangles.empty())) {
-      flags[number] = is_hidden;
-      counters.covered += is_hidden;
-      counters.free += !is_hidden;
-      return true;
-    }
-    return false;
+    const bool is_free = (code > cell.far) & has_no_near & !is_hidden;
+    flags[number] = is_hidden;  // or what will be written later
+    counters.covered += is_hidden;
+    counters.free += is_free;
+    return is_hidden | is_free;
   }
   static constexpr bool kStartsOutside = false;
+  static constexpr bool kJumps = false;  // over what cells tell: nobody can guess which do
 
   HWY_INLINE void answer(const Waiting& w) const { flags[w.number] = is_hit(w) ? 1 : 0; }
 
@@ -151,16 +151,18 @@ struct NearestHit {
   Hit* hits;
   CoverageCounters& counters;
   Confirmations& confirmations;
+  bool has_no_near = grid.near_triangles.empty();
 
   static constexpr bool kStartsOutside = true;
+  static constexpr bool kJumps = true;
 
   HWY_INLINE void start(uint32_t number) const { hits[number] = {}; }
   HWY_INLINE void miss(uint32_t number) const { hits[number] = {}; }
 
   HWY_INLINE bool decide(const CoverageCell& cell, uint16_t, uint32_t) const {
-    if ((&cell)[1].first != cell.first || !grid.near_triangles.empty()) return false;
-    ++counters.free;
-    return true;
+    const bool is_free = ((&cell)[1].first == cell.first) & has_no_near;
+    counters.free += is_free;
+    return is_free;
   }
 
   HWY_INLINE void answer(const Waiting& w) const {
