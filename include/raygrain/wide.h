@@ -40,7 +40,7 @@ struct WideOptions {
   WideCosts costs = {};
   std::optional<Isa> isa = std::nullopt;  // default_isa() without one
   uint32_t max_leaf_size = 8;  // triangles per leaf, 1 ... 8: leaves of the binary tree are merged where that pays
-  unsigned threads = 0;        // that write it; 0: all. They decide no bit of the tree
+  unsigned threads = 0;        // that plan and write it, asking `measure`; 0: all. They decide no bit of the tree
 };
 
 /// An immutable wide tree over the triangles of a mesh. Cheap to copy (shared inside), safe to use from many threads.

@@ -10,6 +10,7 @@
 #ifndef RAYGRAIN_STD_THREADS
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 #endif
 
 namespace raygrain {
@@ -47,8 +48,11 @@ void run_chunks(size_t chunks, unsigned threads, const std::function<void(size_t
 void run_chunks(size_t chunks, unsigned threads, const std::function<void(size_t)>& run) {
   // More threads than processors help nobody, and oneTBB prints a warning about them.
   const auto wanted = static_cast<int>(std::min(threads, default_threads()));
-  const auto loop = [&] { tbb::parallel_for(size_t{0}, chunks, run); };
-  if (tbb::this_task_arena::max_concurrency() == wanted) return loop();  // workers come to a new arena late
+  // Nobody else's failure cuts this loop short ...
+  tbb::task_group_context alone(tbb::task_group_context::isolated);
+  const auto loop = [&] { tbb::parallel_for(size_t{0}, chunks, run, alone); };
+  // ... and who waits for it does nothing else: callers may hold locks. Workers come to a new arena late.
+  if (tbb::this_task_arena::max_concurrency() == wanted) return tbb::this_task_arena::isolate(loop);
   tbb::task_arena(wanted).execute(loop);
 }
 #endif

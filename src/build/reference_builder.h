@@ -64,6 +64,7 @@ class ReferenceBuilder {
 
   void fill(std::span<Reference> references, Bounds& box, KeyBox& keys) const;
   void split_top(const OpenRange& root, BuildTimes* times);
+  void split_level(std::span<const OpenRange> level, std::span<TopSplit> splits, BuildTimes* times) const;
   void split_for_top(const OpenRange& node, Scratch& scratch, unsigned threads, TopSplit& result) const;
   std::vector<OpenRange> next_level(std::span<const OpenRange> level, std::span<TopSplit> splits);
   Piece build_piece(const OpenRange& root) const;

@@ -1,4 +1,4 @@
-// What one thread needs while it splits nodes; kept from node to node, so that no node allocates.
+// What one thread needs while it splits nodes; kept from node to node, so that few nodes allocate.
 #pragma once
 
 #include "base/parallel.h"

@@ -1,4 +1,6 @@
 // The upper nodes of the parallel builder, down to subtrees that one thread builds.
+#include <algorithm>
+
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "build/reference_scratch.h"
@@ -9,29 +11,43 @@ namespace {
 constexpr size_t kSubtree = 4096;  // nodes of up to this many references are built by one thread
 }
 
-/// Splits nodes until each is small enough for one thread, level by level: the largest by all threads, one after the
-/// other, then the rest of the level side by side.
+/// Splits nodes until each is small enough for one thread, level by level.
 template <class Reference>
 void ReferenceBuilder<Reference>::split_top(const OpenRange& root, BuildTimes* times) {
-  const unsigned threads = options_.threads != 0 ? options_.threads : default_threads();
   top_.assign(1, {});
   std::vector<OpenRange> level{root};
   while (!level.empty()) {
+    std::ranges::stable_sort(level, std::greater<>(), [](const OpenRange& node) { return node.context.count; });
     std::vector<TopSplit> splits(level.size());
-    const Timer timer;
-    Scratch scratch;
-    const auto is_large = [&](const OpenRange& node) {
-      return size_t{4} * threads * node.context.count > root.context.count;
-    };
-    for (size_t i = 0; i < level.size(); ++i)
-      if (is_large(level[i])) split_for_top(level[i], scratch, threads, splits[i]);
-    parallel_for(level.size(), 1, threads, [&](size_t begin, size_t end) {
-      for (size_t i = begin; i < end; ++i)
-        if (Scratch own; !is_large(level[i])) split_for_top(level[i], own, 1, splits[i]);
-    });
-    if (times) add_scaled<TopSplit>(*times, splits, timer.seconds());
+    split_level(level, splits, times);
     level = next_level(level, splits);
   }
+}
+
+/// Those that would hold up the others by all threads, one after the other; then the rest side by side.
+template <class Reference>
+void ReferenceBuilder<Reference>::split_level(std::span<const OpenRange> level, std::span<TopSplit> splits,
+                                              BuildTimes* times) const {
+  const size_t threads = options_.threads != 0 ? options_.threads : default_threads();
+  size_t rest = 0;
+  for (const OpenRange& node : level) rest += node.context.count;
+  Scratch scratch;
+  const Timer timer;
+  size_t large = 0;
+  for (; large < level.size() && level[large].context.count * threads > rest; ++large) {
+    rest -= level[large].context.count;
+    split_for_top(level[large], scratch, static_cast<unsigned>(threads), splits[large]);
+  }
+  const double by_all = timer.seconds();
+  parallel_for(level.size() - large, 1, static_cast<unsigned>(threads), [&](size_t begin, size_t end) {
+    for (size_t i = large + begin; i < large + end; ++i) {
+      Scratch own;
+      split_for_top(level[i], own, 1, splits[i]);
+    }
+  });
+  if (!times) return;
+  add_scaled<TopSplit>(*times, splits.first(large), by_all);
+  add_scaled<TopSplit>(*times, splits.subspan(large), timer.seconds() - by_all);
 }
 
 template <class Reference>

@@ -31,6 +31,7 @@ constexpr size_t kRaysPerTile = 4;
 /// ... and the grid does not fit the caches anyway.
 constexpr size_t kSmallGrid = size_t{1} << 20;
 constexpr size_t kMostRaysPerTask = size_t{1} << 17;  // so many fit a cache with their answers
+constexpr size_t kPointsPerTask = size_t{1} << 16;
 constexpr size_t kLeastRaysPerTask = 4096;
 
 size_t bytes_of(const CoverageGrid& grid) {
@@ -265,7 +266,7 @@ std::vector<std::vector<uint32_t>> Coverage::divide(std::span<const Coverage* co
   const EyeGrids eye{grids.data(), static_cast<uint32_t>(grids.size())};
   const CoverageKernels& table = *coverages[0]->data_->kernels;
   std::vector<uint8_t> chosen(points.size());
-  parallel_for(points.size(), kMostRaysPerTask, threads, [&](size_t begin, size_t end) {
+  parallel_for(points.size(), kPointsPerTask, threads, [&](size_t begin, size_t end) {
     table.choose(eye, are_directions, points.data() + begin, end - begin, chosen.data() + begin);
   });
   std::array<size_t, 256> counts{};

@@ -117,7 +117,8 @@ void WidePlan::price_all() {
   size_t upper = 0;
   for (; upper < nodes.size() && nodes.size() - upper < kSubtrees; ++upper)
     if (const uint32_t left = binary_[nodes[upper]].left; left != 0) nodes.insert(nodes.end(), {left, left + 1});
-  parallel_for(nodes.size() - upper, 1, options_.threads, [&](size_t begin, size_t end) {
+  const unsigned threads = binary_.size() < kNodesPerTask ? 1 : options_.threads;
+  parallel_for(nodes.size() - upper, 1, threads, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) price_subtree(nodes[upper + i]);
   });
   while (upper-- > 0) price(nodes[upper]);

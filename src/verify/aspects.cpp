@@ -34,10 +34,11 @@ std::set<std::string> aspects_of(const StructureSpec& spec) {
   const bool is_accelerator = spec.kind == "accelerator";
   if (spec.kind == "binary" || spec.kind == "wide" || is_accelerator) add_recipe(spec.tree, aspects);
   if (is_accelerator && spec.areas) add_recipe(spec.local, aspects);
-  if (spec.kind != "binary") aspects.insert({"isa " + spec.isa, spec.kind + ", isa " + spec.isa});
+  const bool has_kernels = spec.kind != "binary" && spec.traversal == "wide";
+  if (has_kernels) aspects.insert({"isa " + spec.isa, spec.kind + ", isa " + spec.isa});
   if (spec.kind == "frame") aspects.insert("frame " + spec.frame);
   if (is_accelerator && spec.areas) aspects.insert(spec.ray_space ? "local trees in ray space" : "local trees");
-  if (is_accelerator && spec.areas && spec.covered) aspects.insert("accelerators with coverage");
+  if (is_accelerator && has_kernels && spec.areas && spec.covered) aspects.insert("accelerators with coverage");
   if (spec.threads != 1) aspects.insert("several threads");
   if (spec.reinserted) aspects.insert("reinserted");
   if (spec.refitted) aspects.insert("refitted");

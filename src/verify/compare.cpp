@@ -78,6 +78,7 @@ std::optional<Difference> compare(const RayStructure& structure, const Round& ro
         if (!is_really_wrong(round, room, g, i)) what.insert(0, "the tree of reference is wrong: ");
         note({what, g, i});
       }
+      if (tally.comparisons == before) continue;
       for (const std::string& aspect : aspects_of(structure.name, group.kind))
         tally.comparisons_of[aspect] += tally.comparisons - before;
     }

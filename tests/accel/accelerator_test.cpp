@@ -242,6 +242,24 @@ TEST(Accelerator, TellsProgressAndCanBeCancelled) {
   }
 }
 
+/// Trees are built side by side: where one is stopped the others must not go on with half of their loops.
+TEST(Accelerator, IsCancelledCleanlyWhileSeveralTreesAreBuilt) {
+  const TriangleMesh mesh = random_mesh(20000, 18);
+  for (size_t stop = 1; stop < 60; ++stop) {
+    AcceleratorOptions options;
+    options.coverage = std::nullopt;
+    size_t calls = 0;
+    options.progress = [&](double) { return ++calls < stop; };
+    try {
+      const Accelerator whole(mesh, some_areas(), options);
+      EXPECT_LT(calls, stop);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code, ErrorCode::kCancelled);
+      EXPECT_EQ(calls, stop);
+    }
+  }
+}
+
 TEST(Accelerator, WorksWithoutAreasAndWithoutTriangles) {
   const Accelerator no_areas(random_mesh(20, 7));
   AcceleratorCounters counters;

@@ -1,9 +1,11 @@
 #include "base/parallel.h"
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
 #include <set>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -51,6 +53,39 @@ TEST(Parallel, RethrowsWhatABodyThrows) {
                                 if (begin == 500) throw std::runtime_error("stop");
                               }),
                  std::runtime_error);
+}
+
+/// Builds run side by side: what one throws must leave the loops of the others whole.
+TEST(Parallel, AFailureBesideDoesNotCutALoop) {
+  for (const unsigned threads : {0u, 2u, 8u})
+    for (int round = 0; round < 20; ++round) {
+      std::atomic<int> begun{0}, short_loops{0};
+      const auto body = [&](size_t begin, size_t) {
+        ++begun;
+        if (begin == 1) throw std::runtime_error("stop");
+        std::atomic<int> done{0};
+        parallel_for(64, 1, threads, [&](size_t, size_t) {
+          std::this_thread::sleep_for(std::chrono::microseconds(20));
+          ++done;
+        });
+        if (done != 64) ++short_loops;
+      };
+      EXPECT_THROW(parallel_for(8, 1, threads, body), std::runtime_error);
+      ASSERT_EQ(short_loops, 0) << threads << " threads";
+    }
+}
+
+/// A caller may hold a lock while a loop within runs.
+TEST(Parallel, WhoWaitsForALoopDoesNothingElse) {
+  thread_local int depth = 0;
+  std::atomic<int> nested{0};
+  for (const unsigned threads : {0u, 2u, 8u})
+    parallel_for(40, 1, threads, [&](size_t, size_t) {
+      if (depth++ > 0) ++nested;
+      parallel_for(8, 1, threads, [&](size_t, size_t) { std::this_thread::yield(); });
+      --depth;
+    });
+  EXPECT_EQ(nested, 0);
 }
 
 TEST(Parallel, LoopsMayNest) {

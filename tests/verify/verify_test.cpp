@@ -46,12 +46,14 @@ TEST(Verify, FindsNothingWrong) {
   EXPECT_GT(result.tally.inside_rays, result.tally.rays / 200);
   EXPECT_GT(result.tally.lines, result.tally.rays / 2000);
   uint64_t by_rays = 0;  // of every comparison, its kind of rays is known
-  for (const auto& [aspect, count] : result.tally.comparisons_of)
+  for (const auto& [aspect, count] : result.tally.comparisons_of) {
+    EXPECT_GT(count, 0u) << aspect;
     if (aspect.find(" rays") != std::string::npos && aspect.find(',') != std::string::npos) by_rays += count;
+  }
   EXPECT_EQ(by_rays, result.tally.comparisons);
   for (const char* aspect : {"wide, mixed rays", "coverage, rays to one point", "frame, rays of one direction",
                              "accelerator, rays from one point", "builder spatial", "measure VISIBLE", "batches"})
-    EXPECT_GT(result.tally.comparisons_of.count(aspect), 0u) << aspect;
+    EXPECT_EQ(result.tally.comparisons_of.count(aspect), 1u) << aspect;  // none is 0
 }
 
 /// Brute force, but for what `spoil` makes of it.

@@ -30,7 +30,7 @@ constexpr LaneLists kLaneLists;
 /// by Highway's Compress: GCC copies its tables onto the stack at each call.
 template <class LaneTag>
 HWY_INLINE hn::Vec<LaneTag> compressed(LaneTag tag, hn::Vec<LaneTag> lanes, hn::Mask<LaneTag> mask) {
-#if HWY_TARGET == HWY_AVX3
+#if HWY_TARGET <= HWY_AVX3  // or better
   static_cast<void>(tag);
   return hn::Compress(lanes, mask);
 #else

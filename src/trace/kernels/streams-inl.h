@@ -20,7 +20,7 @@ namespace raygrain::HWY_NAMESPACE {
 namespace {
 
 using KeyTag = hn::RebindToUnsigned<Tag>;
-constexpr bool kHasStreams = HWY_TARGET == HWY_AVX3 || HWY_TARGET == HWY_AVX2;
+constexpr bool kHasStreams = HWY_TARGET <= HWY_AVX2;  // or better
 
 /// Rays in flight: enough to fill the waits, few enough to stay in the first cache.
 constexpr size_t kSlots = 16;
@@ -59,7 +59,7 @@ HWY_INLINE float least_of(const float* values, uint32_t bits) {
 
 /// Puts the children in `bits` on the stack, the last lane on top, without making it larger.
 HWY_INLINE void store_children(StreamStack& stack, const WideNode& node, uint32_t bits) {
-#if HWY_TARGET == HWY_AVX3
+#if HWY_TARGET <= HWY_AVX3
   const hn::CappedTag<ChildRef, kWidth> refs;
   const KeyTag tag;
   const auto lanes = hn::PromoteTo(refs, hn::Compress(hn::Iota(tag, 0), hn::RebindMask(tag, mask_of(bits))));
