@@ -72,7 +72,7 @@ std::string random_recipe(Random& random, const Registry& registry) {
 /// A global tree knows no area.
 std::string random_global_recipe(Random& random, const Registry& registry) {
   while (true) {
-    const std::string name = random_recipe(random, registry);
+    std::string name = random_recipe(random, registry);
     const Recipe recipe = parse_recipe(name, registry);
     if (!needs_area(recipe, registry) && !needs_samples(recipe, registry)) return name;
   }
