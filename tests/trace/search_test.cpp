@@ -66,6 +66,19 @@ TEST(Search, AgreesWithTheOracle) {
   EXPECT_GT(hits, rays / 3);
 }
 
+TEST(Search, RaysEndAtTheirHits) {
+  for_families(2, [&](const TriangleMesh& mesh, uint64_t seed) {
+    const Bvh bvh = test::hand_made_trees(mesh).front().second;
+    const std::vector<Ray> rays = test::aimed_rays(mesh, 50, seed), ended = end_at_hits(rays, bvh, mesh);
+    ASSERT_EQ(ended.size(), rays.size());
+    for (size_t i = 0; i < rays.size(); ++i) {
+      const Hit hit = intersect_reference(mesh, rays[i]);
+      EXPECT_TRUE(same_bits(intersect_reference(mesh, ended[i]), hit));
+      EXPECT_EQ(ended[i].tmax, is_hit(hit) ? hit.t : rays[i].tmax);
+    }
+  });
+}
+
 // A search over half of the triangles, given the best of the other half.
 TEST(Search, MergesWithWhatIsKnown) {
   for_families(2, [&](const TriangleMesh& mesh, uint64_t seed) {
