@@ -68,7 +68,7 @@ TEST(Search, AgreesWithTheOracle) {
 
 TEST(Search, RaysEndAtTheirHits) {
   for_families(2, [&](const TriangleMesh& mesh, uint64_t seed) {
-    const Bvh bvh = test::hand_made_trees(mesh).front().second;
+    const Bvh bvh = test::hand_made_trees(mesh).front().bvh;
     const std::vector<Ray> rays = test::aimed_rays(mesh, 50, seed), ended = end_at_hits(rays, bvh, mesh);
     ASSERT_EQ(ended.size(), rays.size());
     for (size_t i = 0; i < rays.size(); ++i) {
