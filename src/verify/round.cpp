@@ -177,7 +177,8 @@ void draw_structures(Round& round, const VerifyOptions& options, Random& random)
   if (options.structures_per_scene > 0)
     round.structures.push_back("exact seed=" + std::to_string(random.below(100'000)));
   for (uint32_t i = 0; i < options.structures_per_scene; ++i) {
-    StructureSpec spec = parse_spec(random_structure(random.next()).name);
+    Random own(random.next());
+    StructureSpec spec = random_spec(own);
     // Coverages of areas that do not cover the scene answer little; those that do are the last.
     if (spec.kind == "coverage" && !round.scene.areas.empty() && random.below(4))
       spec.area = static_cast<uint32_t>(round.scene.areas.size() - 1 - random.below(2) % round.scene.areas.size());

@@ -1,7 +1,5 @@
 // Single rays through accelerators with every kind of structure, against brute force; and what explain() says.
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <string>
@@ -14,14 +12,12 @@
 
 #include "base/parallel.h"
 #include "support/mesh_families.h"
+#include "support/same_bits.h"
 
 namespace raygrain {
 namespace {
 
-bool identical(const Hit& a, const Hit& b) {
-  using Bits = std::array<uint32_t, 4>;
-  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
-}
+using test::same_bits;
 
 AcceleratorOptions options_of(LocalSpace space, bool covered, Routing routing = Routing::kAreas) {
   AcceleratorOptions options;
@@ -67,10 +63,10 @@ TEST(Classification, EveryStructureEqualsBruteForce) {
       scene.intersect(rays, hits);
       scene.occluded(rays, flags);
       for (size_t i = 0; i < rays.size(); ++i) {
-        ASSERT_TRUE(identical(hits[i], expected[i])) << families[f].name << " ray " << i;
+        ASSERT_TRUE(same_bits(hits[i], expected[i])) << families[f].name << " ray " << i;
         ASSERT_EQ(flags[i] != 0, is_hit(expected[i])) << families[f].name << " ray " << i;
-        ASSERT_TRUE(identical(scene.intersect(rays[i]), expected[i])) << families[f].name << " ray " << i;
-        ASSERT_TRUE(identical(scene.intersect(rays[i], &counters), expected[i])) << families[f].name << " ray " << i;
+        ASSERT_TRUE(same_bits(scene.intersect(rays[i]), expected[i])) << families[f].name << " ray " << i;
+        ASSERT_TRUE(same_bits(scene.intersect(rays[i], &counters), expected[i])) << families[f].name << " ray " << i;
         ASSERT_EQ(scene.occluded(rays[i]), is_hit(expected[i])) << families[f].name << " ray " << i;
         ASSERT_EQ(scene.occluded(rays[i], &counters), is_hit(expected[i])) << families[f].name << " ray " << i;
       }
@@ -99,7 +95,7 @@ TEST(Classification, RaysThatLeaveTheWindowFindTriangles) {
     for (int i = 0; i < 200; ++i) {
       const auto lean = static_cast<float>(i - 100) * 0.006f;
       const Ray ray{{0.2f, 5, 0}, {lean, 0.5f * lean, 1}};
-      ASSERT_TRUE(identical(scene.intersect(ray), intersect_reference(mesh, ray))) << i;
+      ASSERT_TRUE(same_bits(scene.intersect(ray), intersect_reference(mesh, ray))) << i;
       ASSERT_EQ(scene.occluded(ray), occluded_reference(mesh, ray)) << i;
     }
   }

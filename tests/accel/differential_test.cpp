@@ -2,8 +2,6 @@
 // force. RAYGRAIN_TEST_SCALE=full: more than a million rays instead of fifty thousand; small: a few thousand, for
 // builds with sanitizers.
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cstdlib>
 #include <iostream>
 #include <string>
@@ -17,9 +15,12 @@
 
 #include "base/parallel.h"
 #include "support/mesh_families.h"
+#include "support/same_bits.h"
 
 namespace raygrain {
 namespace {
+
+using test::same_bits;
 
 using test::NamedMesh;
 
@@ -144,11 +145,6 @@ void check_counters(const AcceleratorCounters& c, size_t rays) {
 }
 
 /// t, u, v and id, bit by bit.
-bool identical(const Hit& a, const Hit& b) {
-  using Bits = std::array<uint32_t, 4>;
-  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
-}
-
 /// All rays through one combination: counted and not, one by one and as arrays.
 Tally compare(const Combination& combination, const std::vector<Ray>& rays, const std::vector<Hit>& expected) {
   Tally tally;
@@ -160,10 +156,10 @@ Tally compare(const Combination& combination, const std::vector<Ray>& rays, cons
   accelerator.occluded(rays, shadows, 1);
   for (size_t i = 0; i < rays.size(); ++i) {
     const Hit plain = i % 4 == 0 ? accelerator.intersect(rays[i]) : counted[i];
-    const Hit& got = identical(plain, expected[i]) ? counted[i] : plain;
+    const Hit& got = same_bits(plain, expected[i]) ? counted[i] : plain;
     const bool shadow = shadows[i] != 0;
     tally.comparisons += 2;
-    if (identical(got, expected[i]) && shadow == is_hit(expected[i])) continue;
+    if (same_bits(got, expected[i]) && shadow == is_hit(expected[i])) continue;
     ++tally.differences;
     if (tally.first_difference.empty())
       tally.first_difference = combination.name + ": " + describe(rays[i], got, expected[i]) +

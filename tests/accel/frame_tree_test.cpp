@@ -3,8 +3,6 @@
 #include "raygrain/frame_tree.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cstdlib>
 #include <iostream>
 #include <numeric>
@@ -18,14 +16,12 @@
 #include "base/parallel.h"
 #include "base/random.h"
 #include "support/mesh_families.h"
+#include "support/same_bits.h"
 
 namespace raygrain {
 namespace {
 
-bool identical(const Hit& a, const Hit& b) {
-  using Bits = std::array<uint32_t, 4>;
-  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
-}
+using test::same_bits;
 
 size_t wanted_rays() {
   const char* variable = std::getenv("RAYGRAIN_TEST_SCALE");
@@ -93,11 +89,11 @@ void compare(const FrameTree& tree, const Ray& ray, const Hit& expected, float c
   const std::optional<bool> any = tree.occluded_counted(ray, counters, {.prune = false});
   if (!got || !shadow || !all || !any) return tally.differ("use", ray, use);
   const bool is_complete = std::min(expected.t, ray.tmax) <= complete_until;
-  if (is_complete ? !identical(*got, expected) : is_nearer(*got, expected)) tally.differ("nearest", ray, use);
-  if (is_complete ? !identical(*all, expected) : is_nearer(*all, expected)) tally.differ("unpruned nearest", ray, use);
+  if (is_complete ? !same_bits(*got, expected) : is_nearer(*got, expected)) tally.differ("nearest", ray, use);
+  if (is_complete ? !same_bits(*all, expected) : is_nearer(*all, expected)) tally.differ("unpruned nearest", ray, use);
   if (is_complete ? *shadow != is_hit(expected) : *shadow && !is_hit(expected)) tally.differ("any", ray, use);
   if (*any != *shadow) tally.differ("unpruned any", ray, use);
-  if (is_complete && !identical(*tree.intersect(ray, expected), expected)) tally.differ("known", ray, use);
+  if (is_complete && !same_bits(*tree.intersect(ray, expected), expected)) tally.differ("known", ray, use);
 }
 
 /// Rays along a direction, or leaning from it by up to `lean`, through points where tracers fail.

@@ -1,7 +1,5 @@
 // Scene and rays turned together: ray space does not notice.
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <iostream>
 #include <numeric>
 
@@ -12,14 +10,12 @@
 #include "raygrain/wide.h"
 
 #include "base/random.h"
+#include "support/same_bits.h"
 
 namespace raygrain {
 namespace {
 
-bool identical(const Hit& a, const Hit& b) {
-  using Bits = std::array<uint32_t, 4>;
-  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
-}
+using test::same_bits;
 
 /// A floor of boxes with axis-parallel faces.
 TriangleMesh town(uint64_t seed) {
@@ -78,7 +74,7 @@ TEST(FrameTree, ObliquenessCostsNothing) {
     TraceCounters ours, worlds;
     for (const Vec3d start : starts) {
       const Ray ray{to_float(to_world_direction(axes, start)), direction};
-      ASSERT_TRUE(identical(*tree->intersect_counted(ray, ours), wide.intersect_counted(ray, worlds)));
+      ASSERT_TRUE(same_bits(*tree->intersect_counted(ray, ours), wide.intersect_counted(ray, worlds)));
     }
     in_ray_space.push_back(pruned_cost(ours));
     in_world.push_back(pruned_cost(worlds));

@@ -4,12 +4,10 @@
 #include <string>
 #include <vector>
 
-#include <gtest/gtest.h>
-
 #include "raygrain/accelerator.h"
-#include "raygrain/error.h"
 
 #include "base/random.h"
+#include "support/error_of.h"
 
 namespace raygrain::test {
 
@@ -77,17 +75,6 @@ inline std::vector<InfluenceArea> some_areas() {
   return {z_area("sun", -1, 2),
           {"lamp", PointArea{{0.5f, 3, 0.25f}, {0, -1, 0}, {0, 1, 0}, 90, 60, 0.2f, 6}},
           {"corner", PlaneArea{{2, 2, 2}, {-1, -1, -1}, {0, 0, 1}, 0.7f, 0.7f, 3}}};
-}
-
-template <class Action>
-Error error_of(const Action& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error;
-  }
-  ADD_FAILURE() << "no error";
-  return Error(ErrorCode::kCancelled, "", "");
 }
 
 }  // namespace raygrain::test

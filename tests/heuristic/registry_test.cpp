@@ -8,10 +8,13 @@
 #include "raygrain/error.h"
 
 #include "base/random.h"
+#include "support/error_of.h"
 #include "support/mesh_families.h"
 
 namespace raygrain::test {
 namespace {
+
+using test::error_of;
 
 const Registry kRegistry = default_registry();
 
@@ -38,16 +41,6 @@ std::vector<Ray> samples() {
     rays.push_back({{x, y, -30}, {0, 0, 1}});
   }
   return rays;
-}
-
-Error error_of(const std::function<void()>& act) {
-  try {
-    act();
-  } catch (const Error& error) {
-    return error;
-  }
-  ADD_FAILURE() << "no error";
-  return {ErrorCode::kCancelled, "", ""};
 }
 
 TEST(Recipes, AreReadInAnyCase) {

@@ -201,14 +201,4 @@ std::vector<std::string> file_names(const std::string& folder) {
   return names;
 }
 
-Error error_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error;
-  }
-  ADD_FAILURE() << "no Error was thrown";
-  return Error(ErrorCode::kUsage, "", "none");
-}
-
 }  // namespace raygrain::test

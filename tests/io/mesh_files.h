@@ -1,12 +1,13 @@
 // Mesh files of every format as bytes, written here and not by the code under test.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "raygrain/error.h"
 #include "raygrain/mesh.h"
+
+#include "support/error_of.h"
 
 namespace raygrain::test {
 
@@ -37,8 +38,5 @@ bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
 void put_file(const std::string& path, const std::string& bytes);
 std::string get_file(const std::string& path);
 std::vector<std::string> file_names(const std::string& folder);
-
-/// The Error that `action` throws; a failed expectation if it throws none.
-Error error_of(const std::function<void()>& action);
 
 }  // namespace raygrain::test

@@ -10,10 +10,13 @@
 #include "raygrain/study.h"
 
 #include "study/table.h"
+#include "support/error_of.h"
 #include "support/shared.h"
 
 namespace raygrain {
 namespace {
+
+using test::error_of;
 
 std::string content(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -40,17 +43,6 @@ Study counting_study(size_t count, std::atomic<int>& runs, const std::string& id
     });
   }
   return study;
-}
-
-template <class Run>
-Error error_of(const Run& run) {
-  try {
-    run();
-  } catch (const Error& error) {
-    return error;
-  }
-  ADD_FAILURE() << "no error";
-  return Error(ErrorCode::kUsage, "", "");
 }
 
 TEST(StudyRunner, SortsAndReadsBack) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -14,13 +13,12 @@
 
 #include "base/random.h"
 #include "support/mesh_families.h"
+#include "support/same_bits.h"
 
 namespace raygrain {
 namespace {
 
-bool same_bits(const Hit& a, const Hit& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
+using test::same_bits;
 
 Vec3 unit_vector(Random& random) {
   while (true) {

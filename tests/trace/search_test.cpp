@@ -1,5 +1,4 @@
 // Every search over every tree against brute force, bit for bit.
-#include <cstring>
 
 #include <gtest/gtest.h>
 
@@ -7,17 +6,16 @@
 #include "raygrain/triangle.h"
 
 #include "support/mesh_families.h"
+#include "support/same_bits.h"
 #include "trace/hand_made_trees.h"
 
 namespace raygrain {
 namespace {
 
+using test::same_bits;
+
 using test::NamedMesh;
 using test::NamedTree;
-
-bool same_bits(const Hit& a, const Hit& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
 
 template <class Body>
 void for_families(uint64_t seeds, const Body& body) {

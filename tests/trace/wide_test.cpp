@@ -15,14 +15,13 @@
 
 #include "base/parallel.h"
 #include "support/mesh_families.h"
+#include "support/same_bits.h"
 #include "trace/hand_made_trees.h"
 
 namespace raygrain {
 namespace {
 
-bool same_bits(const Hit& a, const Hit& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
+using test::same_bits;
 
 std::vector<WideBvh> on_every_isa(const Bvh& tree, const TriangleMesh& mesh, WideOptions options = {}) {
   std::vector<WideBvh> trees;
