@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "raygrain/area.h"
@@ -15,12 +16,24 @@
 
 namespace raygrain {
 
+/// In which order the rays of a batch are answered. The answers do not depend on it.
+enum class CoverageOrder : uint8_t {
+  kChosen,      // for each batch what was measured to pay for as many rays
+  kAsGiven,     // one by one
+  kRuns,        // as given, but neighbours in one cell together
+  kOpenByTile,  // what cells do not tell is sorted by tile
+  kByTile,      // sorted by tile first
+  kByCell,      // sorted by cell first, those of a cell together
+};
+/// "chosen", "as-given", "runs", "open-by-tile", "by-tile" or "by-cell".
+std::string_view name(CoverageOrder order);
+
 struct CoverageOptions {
-  float cells_per_triangle = 0.25f;          // of each tile; > 0
-  uint32_t triangles_per_tile = 256;         // on average; >= 1
-  std::optional<Isa> isa = std::nullopt;     // default_isa() without one
-  std::optional<bool> sorts = std::nullopt;  // the rays of batches by tile; without: where it was measured to pay
-  unsigned threads = 0;                      // of the build; 0 = all
+  float cells_per_triangle = 0.25f;       // of each tile; > 0
+  uint32_t triangles_per_tile = 256;      // on average; >= 1
+  std::optional<Isa> isa = std::nullopt;  // default_isa() without one
+  CoverageOrder order = CoverageOrder::kChosen;
+  unsigned threads = 0;  // of the build; 0 = all
 };
 
 /// Counts of what was done (sums).

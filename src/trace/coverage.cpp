@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "base/sizes.h"
 #include "base/timer.h"
+#include "trace/coverage_columns.h"
 #include "trace/coverage_grid.h"
 #include "trace/kernels/coverage_kernels.h"
 #include "trace/kernels/kernels.h"
@@ -20,13 +21,16 @@ struct Coverage::Data {
   CoverageGrid grid;
   Isa isa = Isa::kScalar;
   const CoverageKernels* kernels = &coverage_kernels(Isa::kScalar);
-  std::optional<bool> sorts;
+  CoverageOrder order = CoverageOrder::kChosen;
   double seconds = 0;
 };
 
 namespace {
 
-/// Sorting pays where so many rays meet each tile, on average ...
+/// Sorting by cell pays where so many rays meet each cell, on average. The more, the better, up to what caches hold.
+constexpr size_t kRaysPerCell = 3;
+constexpr size_t kMostRaysPerTaskByCell = size_t{1} << 19;
+/// Sorting by tile pays where so many rays meet each tile ...
 constexpr size_t kRaysPerTile = 4;
 /// ... and the grid does not fit the caches anyway.
 constexpr size_t kSmallGrid = size_t{1} << 20;
@@ -39,89 +43,49 @@ size_t bytes_of(const CoverageGrid& grid) {
          grid.near_triangles.capacity() * sizeof(uint32_t);
 }
 
-Vec3d turn(const ColumnMap& map, Vec3d v) {
-  return {dot(map.rows[0], v), dot(map.rows[1], v), dot(map.rows[2], v)};
-}
-
-/// +1 for directions against the light's, -1 for those along it, 0 for others: from the direction in the map.
-int sense_of(Vec3d q) {
-  const double along = std::abs(q.z);
-  if (!(along >= 0x1p-60 && along <= 0x1p60) || std::max(std::abs(q.x), std::abs(q.y)) > kMostSlope * along) return 0;
-  return q.z > 0 ? 1 : -1;
-}
-int sense_of(const CoverageGrid& grid, Vec3 direction) {
-  return sense_of(turn(grid.map, to_double(direction)));
-}
-
-/// Parallel rays, in double precision: better than the errors that the grid allows for.
-bool column_along(const CoverageGrid& grid, const Ray& ray, int wanted, SingleColumn& column) {
-  const Vec3d direction = turn(grid.map, to_double(ray.direction));
-  if (sense_of(direction) != wanted) return false;
-  const Vec3d q = grid.map.turned(ray.origin);
-  column = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z),
-            static_cast<float>(q.z + direction.z * static_cast<double>(ray.tmax))};
-  return column.s >= grid.s_lo && column.s <= grid.s_hi;
-}
-
-/// A ray whose line passes the eye and that ends there, up to rounding.
-bool column_to_eye(const CoverageGrid& grid, const Ray& ray, SingleColumn& column) {
-  const Vec3d to_eye = to_double(grid.map.center) - to_double(ray.origin), q = turn(grid.map, -to_eye);
-  // Most of several frusta about one eye are done with here: the grid's own test of its window is no wider.
-  constexpr double kRoom = 1 + 0x1p-20;
-  const double x_most = kRoom * static_cast<double>(grid.x_hi), y_most = kRoom * static_cast<double>(grid.y_hi);
-  if (!(q.z > 0 && std::abs(q.x) <= x_most * q.z && std::abs(q.y) <= y_most * q.z)) return false;
-  const Vec3d direction = to_double(ray.direction);
-  const double distance = dot(to_eye, to_eye), size = dot(direction, direction), along = dot(to_eye, direction);
-  if (!(size >= 0x1p-120 && size <= 0x1p120 && distance <= 0x1p120 && along > 0)) return false;
-  const Vec3d beside = cross(to_eye, direction);
-  if (!(dot(beside, beside) <= 0.99 * kMostOffset * kMostOffset * distance * size)) return false;
-  const double end = static_cast<double>(ray.tmax) * size;  // against `along`, where the ray passes the eye
-  if (!(end >= along * (1 - kMostOffset) && end <= along * (1 + kMostOffset))) return false;
-  const double s = 1 / q.z;
-  column = {static_cast<float>(q.x * s), static_cast<float>(q.y * s), static_cast<float>(s), kInf};
-  return column.s >= grid.s_lo && column.s <= grid.s_hi;
-}
-
-bool column_from_eye(const CoverageGrid& grid, const Ray& ray, SingleColumn& column) {
-  if (ray.origin != grid.map.center) return false;
-  const Vec3d q = turn(grid.map, to_double(ray.direction));
-  if (!(q.z >= 0x1p-60 && q.z <= 0x1p60)) return false;
-  column = {static_cast<float>(q.x / q.z), static_cast<float>(q.y / q.z), kInf, 0};
-  return true;
-}
-
 void pass_on(size_t count, std::span<const uint32_t> subset, std::vector<uint32_t>& rest) {
   if (!subset.empty()) return void(rest.insert(rest.end(), subset.begin(), subset.end()));
   for (size_t i = 0; i < count; ++i) rest.push_back(static_cast<uint32_t>(i));
 }
 
-bool pays_to_sort(const CoverageGrid& grid, size_t rays) {
-  return rays >= kRaysPerTile * grid.tiles.size() && bytes_of(grid) > kSmallGrid;
+/// What suits `rays` in one call, of which each worker may take `share`.
+ColumnBatch batch_of(const CoverageGrid& grid, CoverageOrder order, const ColumnRays& rays, size_t count,
+                     size_t share) {
+  ColumnBatch batch;
+  batch.rays = rays;
+  batch.order = order;
+  batch.by_cell = std::min(share, kMostRaysPerTaskByCell) >= kRaysPerCell * grid.cells.size();
+  const bool by_tile = count >= kRaysPerTile * grid.tiles.size() && bytes_of(grid) > kSmallGrid;
+  if (order == CoverageOrder::kChosen && !batch.by_cell && !by_tile) batch.order = CoverageOrder::kAsGiven;
+  return batch;
 }
 
 /// Runs ask(batch, rest, counters) over parts of the rays.
 template <class Ask>
-void in_parts(const CoverageGrid& grid, std::optional<bool> sorts, const ColumnRays& rays, size_t points,
+void in_parts(const CoverageGrid& grid, CoverageOrder order, const ColumnRays& rays, size_t points,
               std::span<const uint32_t> subset, std::vector<uint32_t>& rest, unsigned threads,
               CoverageCounters* counters, const Ask& ask) {
   if (points > 0xffffffffu) throw Error(ErrorCode::kLimit, "Coverage", "more than 2^32 rays in one call");
   const size_t count = subset.empty() ? points : subset.size();
-  const bool sorted = sorts ? *sorts : pays_to_sort(grid, count);
+  const size_t workers = count <= kLeastRaysPerTask ? 1 : (threads == 0 ? default_threads() : threads);
+  ColumnBatch all = batch_of(grid, order, rays, count, (count + workers - 1) / workers);
+  all.subset = subset.empty() ? nullptr : subset.data();
+  all.count = static_cast<uint32_t>(count);
   if (count <= kLeastRaysPerTask) {
     CoverageCounters unwanted;
-    const uint32_t* chosen = subset.empty() ? nullptr : subset.data();
-    return ask({rays, chosen, 0, static_cast<uint32_t>(count), sorted}, rest,
-               counters != nullptr ? *counters : unwanted);
+    return ask(all, rest, counters != nullptr ? *counters : unwanted);
   }
-  const unsigned workers = threads == 0 ? default_threads() : threads;
-  const size_t turns = (count + workers * kMostRaysPerTask - 1) / (workers * kMostRaysPerTask);
+  const size_t most = all.by_cell ? kMostRaysPerTaskByCell : kMostRaysPerTask;
+  const size_t turns = (count + workers * most - 1) / (workers * most);
   const size_t grain = std::max((count + workers * turns - 1) / (workers * turns), kLeastRaysPerTask);
   const size_t parts = (count + grain - 1) / grain;
   std::vector<std::vector<uint32_t>> rests(parts);
   std::vector<CoverageCounters> counts(parts);
   parallel_for(count, grain, threads, [&](size_t begin, size_t end) {
-    ColumnBatch batch{rays, subset.empty() ? nullptr : subset.data() + begin, static_cast<uint32_t>(begin),
-                      static_cast<uint32_t>(end - begin), sorted};
+    ColumnBatch batch = all;
+    if (all.subset != nullptr) batch.subset += begin;
+    batch.first = static_cast<uint32_t>(begin);
+    batch.count = static_cast<uint32_t>(end - begin);
     ask(batch, rests[begin / grain], counts[begin / grain]);
   });
   for (size_t i = 0; i < parts; ++i) {
@@ -131,6 +95,24 @@ void in_parts(const CoverageGrid& grid, std::optional<bool> sorts, const ColumnR
 }
 
 }  // namespace
+
+std::string_view name(CoverageOrder order) {
+  switch (order) {
+    case CoverageOrder::kChosen:
+      return "chosen";
+    case CoverageOrder::kAsGiven:
+      return "as-given";
+    case CoverageOrder::kRuns:
+      return "runs";
+    case CoverageOrder::kOpenByTile:
+      return "open-by-tile";
+    case CoverageOrder::kByTile:
+      return "by-tile";
+    case CoverageOrder::kByCell:
+      return "by-cell";
+  }
+  return {};
+}
 
 void CoverageCounters::add(const CoverageCounters& other) {
   rays += other.rays;
@@ -161,7 +143,7 @@ Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea
   const CoverageDensity density{options.cells_per_triangle, static_cast<double>(options.triangles_per_tile)};
   Data data{build_coverage(std::move(mesh), AreaGeometry(area), density,
                            shared != nullptr ? &shared->neighbours : nullptr, options.threads),
-            isa, &coverage_kernels(isa), options.sorts, 0};
+            isa, &coverage_kernels(isa), options.order, 0};
   data.seconds = timer.seconds();
   data_ = std::make_shared<const Data>(std::move(data));
 }
@@ -212,7 +194,7 @@ void Coverage::occluded(std::span<const Vec3> origins, Vec3 direction, std::span
   check_sizes("Coverage", origins.size(), flags.size());
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != 1) return pass_on(origins.size(), subset, rest);
-  in_parts(grid, data_->sorts, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
+  in_parts(grid, data_->order, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
            threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
              data_->kernels->any(grid, batch, flags.data(), others, counts);
            });
@@ -224,7 +206,7 @@ void Coverage::occluded_towards(std::span<const Vec3> origins, Vec3 point, std::
   check_sizes("Coverage", origins.size(), flags.size());
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || !grid.map.is_eye || point != grid.map.center) return pass_on(origins.size(), subset, rest);
-  in_parts(grid, data_->sorts, {ColumnRays::Kind::kTowards, point, origins.data()}, origins.size(), subset, rest,
+  in_parts(grid, data_->order, {ColumnRays::Kind::kTowards, point, origins.data()}, origins.size(), subset, rest,
            threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
              data_->kernels->any(grid, batch, flags.data(), others, counts);
            });
@@ -236,7 +218,7 @@ void Coverage::intersect(std::span<const Vec3> origins, Vec3 direction, std::spa
   check_sizes("Coverage", origins.size(), hits.size());
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != -1) return pass_on(origins.size(), subset, rest);
-  in_parts(grid, data_->sorts, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
+  in_parts(grid, data_->order, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
            threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
              data_->kernels->nearest(grid, batch, hits.data(), others, counts);
            });
@@ -248,7 +230,7 @@ void Coverage::intersect_from(Vec3 eye, std::span<const Vec3> directions, std::s
   check_sizes("Coverage", directions.size(), hits.size());
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || !grid.map.is_eye || eye != grid.map.center) return pass_on(directions.size(), subset, rest);
-  in_parts(grid, data_->sorts, {ColumnRays::Kind::kFrom, eye, directions.data()}, directions.size(), subset, rest,
+  in_parts(grid, data_->order, {ColumnRays::Kind::kFrom, eye, directions.data()}, directions.size(), subset, rest,
            threads, counters, [&](const ColumnBatch& batch, std::vector<uint32_t>& others, CoverageCounters& counts) {
              data_->kernels->nearest(grid, batch, hits.data(), others, counts);
            });

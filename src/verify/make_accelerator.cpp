@@ -27,7 +27,7 @@ AcceleratorOptions options_of(const StructureSpec& spec) {
   options.space = spec.ray_space ? LocalSpace::kRay : LocalSpace::kWorld;
   options.isa = parse_isa(spec.isa);
   options.coverage = std::nullopt;
-  if (spec.covered) options.coverage = CoverageOptions{spec.cells, spec.tile, {}, spec.sorts};
+  if (spec.covered) options.coverage = CoverageOptions{spec.cells, spec.tile, {}, parse_order(spec.order)};
   options.top_level = {spec.octree ? TopLevelKind::kOctree : TopLevelKind::kList, 4};
   options.samples = samples_of;
   options.threads = spec.threads;

@@ -62,7 +62,7 @@ void answer_batch(const Coverage& coverage, const RayGroup& group, const RayAnsw
 AnswerRays make_coverage(const StructureSpec& spec, const VerifyScene& scene) {
   const InfluenceArea* area = area_of(spec, scene);
   if (area == nullptr) return {};
-  const Coverage coverage(scene.mesh, *area, {spec.cells, spec.tile, parse_isa(spec.isa), spec.sorts, 1});
+  const Coverage coverage(scene.mesh, *area, {spec.cells, spec.tile, parse_isa(spec.isa), parse_order(spec.order), 1});
   if (!coverage.is_useful()) return {};
   return [spec, coverage](const RayGroup& group, const RayAnswers& answers) {
     if (spec.batch == 0) return answer_one_by_one(coverage, group, answers);

@@ -25,7 +25,7 @@ void visit_fields(Spec& s, const Visit& visit) {
   visit("refitted", s.refitted), visit("from_file", s.from_file), visit("area", s.area), visit("leaf", s.leaf);
   visit("isa", s.isa), visit("frame", s.frame), visit("of_area", s.of_area), visit("spatial", s.spatial);
   visit("areas", s.areas), visit("octree", s.octree), visit("ray_space", s.ray_space), visit("covered", s.covered);
-  visit("traversal", s.traversal), visit("cells", s.cells), visit("tile", s.tile), visit("sorts", s.sorts);
+  visit("traversal", s.traversal), visit("cells", s.cells), visit("tile", s.tile), visit("order", s.order);
   visit("batch", s.batch), visit("threads", s.threads), visit("counted", s.counted), visit("unpruned", s.unpruned);
   visit("seed", s.seed);
 }
@@ -59,6 +59,9 @@ Item any_of(Random& random, const std::array<Item, n>& items) {
   return items[random.below(n)];
 }
 
+constexpr std::array kOrders{CoverageOrder::kChosen,     CoverageOrder::kAsGiven, CoverageOrder::kRuns,
+                             CoverageOrder::kOpenByTile, CoverageOrder::kByTile,  CoverageOrder::kByCell};
+
 bool one_in(Random& random, uint64_t n) {
   return random.below(n) == 0;
 }
@@ -88,7 +91,7 @@ void draw_calls(StructureSpec& spec, Random& random) {
 void draw_coverage(StructureSpec& spec, Random& random) {
   spec.cells = any_of(random, std::array<float, 3>{0.25f, 4, 64});
   spec.tile = any_of(random, std::array<uint32_t, 3>{256, 16, 4});
-  spec.sorts = one_in(random, 2);
+  spec.order = name(any_of(random, kOrders));
 }
 
 void draw_tree(StructureSpec& spec, Random& random, const Registry& registry) {
@@ -173,6 +176,12 @@ Isa parse_isa(const std::string& text) {
   for (const Isa isa : {Isa::kScalar, Isa::kSse4, Isa::kAvx2, Isa::kAvx512, Isa::kNeon})
     if (text == name(isa)) return isa;
   fail("unknown instruction set \"" + text + "\"");
+}
+
+CoverageOrder parse_order(const std::string& text) {
+  for (const CoverageOrder order : kOrders)
+    if (text == name(order)) return order;
+  fail("unknown order \"" + text + "\"");
 }
 
 Registry verify_registry(uint64_t seed) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "raygrain/coverage.h"
 #include "raygrain/registry.h"
 #include "raygrain/verify.h"
 #include "raygrain/wide.h"
@@ -28,7 +29,7 @@ struct StructureSpec {
   std::string traversal = "wide";
   float cells = 0.25f;  // of coverages
   uint32_t tile = 256;
-  bool sorts = false;
+  std::string order = "chosen";
   uint32_t batch = 0;  // rays per call; 0: one ray at a time
   uint32_t threads = 1;
   bool counted = false, unpruned = false;
@@ -42,6 +43,7 @@ StructureSpec parse_spec(const std::string& text);
 
 /// Throws Error (kUsage) for an unknown name.
 Isa parse_isa(const std::string& name);
+CoverageOrder parse_order(const std::string& name);
 
 /// The library's own, and "RANDOM": a measure that is not monotone and knows no reason, for trees of any shape.
 Registry verify_registry(uint64_t seed);

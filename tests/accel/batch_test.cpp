@@ -10,6 +10,7 @@
 #include "raygrain/rays.h"
 
 #include "base/random.h"
+#include "support/coverage_orders.h"
 #include "support/mesh_families.h"
 
 namespace raygrain {
@@ -98,7 +99,7 @@ TEST(Batch, AgreesWithTheOracleInAllSizesAndOnAllThreads) {
       Random random(seed + 7);
       const Scene scene = make_scene(family.mesh, 300, random);
       AcceleratorOptions options;
-      options.coverage->sorts = seed % 2 == 0;
+      options.coverage->order = seed % 2 == 0 ? CoverageOrder::kByCell : CoverageOrder::kByTile;
       const Accelerator accelerator(scene.mesh, areas_of(mesh_bounds(scene.mesh), scene.lamp, scene.eye), options);
       for (const size_t count : {size_t{1}, size_t{7}, size_t{8}, size_t{9}, size_t{300}})
         expect_batches(accelerator, scene, count, count % 2 == 0 ? 2 : 1);
@@ -113,26 +114,32 @@ TEST(Batch, IsTheSameForAnyOrderAndAnyNumberOfThreads) {
       std::ranges::find_if(families, [](const test::NamedMesh& m) { return m.closed && has_areas(m.mesh); });
   Random random(11);
   const Scene scene = make_scene(closed->mesh, 20000, random);
-  AcceleratorOptions sorting;
-  sorting.coverage->sorts = true;
   const std::vector<InfluenceArea> areas = areas_of(mesh_bounds(scene.mesh), scene.lamp, scene.eye);
-  const Accelerator usual(scene.mesh, areas), accelerator(scene.mesh, areas, sorting);
+  const Accelerator usual(scene.mesh, areas);
   std::vector<Vec3> sorted = scene.points;
   std::ranges::sort(sorted, {}, [](Vec3 p) { return std::isnan(p.x) ? -kInf : p.x; });
-  for (const std::vector<Vec3>& points : {scene.points, sorted})
-    for (const unsigned threads : {1u, 2u, 0u}) {
-      std::vector<uint8_t> sun(points.size()), lamp(points.size());
-      std::vector<Hit> first(points.size()), usual_first(points.size());
-      accelerator.intersect(points, kLight, first, threads);
-      usual.intersect(points, kLight, usual_first, threads);
-      ASSERT_TRUE(first == usual_first);
-      accelerator.occluded(points, -kLight, sun, threads);
-      accelerator.occluded_towards(points, scene.lamp, lamp, threads);
-      for (size_t i = 0; i < points.size(); ++i) {
-        ASSERT_EQ(sun[i] != 0, usual.occluded({points[i], -kLight, 0, kInf})) << i;
-        ASSERT_EQ(lamp[i] != 0, usual.occluded({points[i], scene.lamp - points[i], 0, 1})) << i;
+  for (const std::vector<Vec3>& points : {scene.points, sorted}) {
+    const size_t count = points.size();
+    std::vector<uint8_t> sun(count), lamp(count), expected_sun(count), expected_lamp(count);
+    std::vector<Hit> first(count), expected_first(count);
+    usual.intersect(points, kLight, expected_first, 1);
+    for (size_t i = 0; i < count; ++i) {
+      expected_sun[i] = usual.occluded({points[i], -kLight, 0, kInf});
+      expected_lamp[i] = usual.occluded({points[i], scene.lamp - points[i], 0, 1});
+    }
+    for (const CoverageOrder order : test::kCoverageOrders) {
+      SCOPED_TRACE(name(order));
+      AcceleratorOptions options;
+      options.coverage->order = order;
+      const Accelerator accelerator(scene.mesh, areas, options);
+      for (const unsigned threads : {1u, 2u, 0u}) {
+        accelerator.intersect(points, kLight, first, threads);
+        accelerator.occluded(points, -kLight, sun, threads);
+        accelerator.occluded_towards(points, scene.lamp, lamp, threads);
+        ASSERT_TRUE(first == expected_first && sun == expected_sun && lamp == expected_lamp);
       }
     }
+  }
 }
 
 TEST(Batch, RefusesAnswersOfAnotherSizeAndTakesNoRays) {

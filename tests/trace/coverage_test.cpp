@@ -12,6 +12,7 @@
 #include "raygrain/trace.h"
 
 #include "base/random.h"
+#include "support/coverage_orders.h"
 #include "support/mesh_families.h"
 #include "support/same_bits.h"
 
@@ -171,10 +172,13 @@ void for_families(uint64_t seeds, const Body& body) {
     }
 }
 
+/// Another order each time.
 CoverageOptions some_options(uint64_t seed, Isa isa) {
+  static size_t turn = 0;
   const float cells[] = {0.25f, 4, 64};
   const uint32_t triangles[] = {256, 16, 4};
-  return {cells[seed % 3], triangles[(seed / 3 + seed) % 3], isa, seed % 2 == 1, 1};
+  const CoverageOrder order = test::kCoverageOrders[turn++ % std::size(test::kCoverageOrders)];
+  return {cells[seed % 3], triangles[(seed / 3 + seed) % 3], isa, order, 1};
 }
 
 TEST(Coverage, AgreesWithTheOracleAlongADirection) {

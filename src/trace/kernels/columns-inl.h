@@ -20,16 +20,17 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr size_t kBlock = 128;
+constexpr size_t kBlockRoom = kBlock + 16;  // for vectors that begin anywhere in it
 constexpr uint32_t kOutside = 0xffffffffu;  // not for this grid to answer
 constexpr uint32_t kBeside = 0xfffffffeu;   // where nothing is
 
 /// Columns of a block of rays.
 struct Block {
-  alignas(64) float x[kBlock], y[kBlock], s[kBlock];
+  alignas(64) float x[kBlockRoom], y[kBlockRoom], s[kBlockRoom];
   alignas(64) float in_tile_x[kBlock], in_tile_y[kBlock];  // place in the tile, in [0, 1) up to rounding
   alignas(64) uint32_t tile[kBlock];                       // or one of the above
   uint32_t number[kBlock];                                 // of the ray
-  Vec3 points[kBlock + 16];
+  Vec3 points[kBlockRoom];
 };
 
 using ColumnTag = hn::CappedTag<float, 8>;
@@ -55,12 +56,42 @@ HWY_INLINE void load(const ColumnBatch& batch, size_t begin, size_t count, Block
   }
 }
 
+/// Points, or directions from an eye, relative to where their map begins.
+struct MapPoints {
+  ColumnFloats x, y, z;
+
+  HWY_INLINE MapPoints(Vec3 center, ColumnFloats px, ColumnFloats py, ColumnFloats pz)
+      : x(hn::Sub(px, hn::Set(ColumnTag(), center.x))),
+        y(hn::Sub(py, hn::Set(ColumnTag(), center.y))),
+        z(hn::Sub(pz, hn::Set(ColumnTag(), center.z))) {}
+};
+
+/// As many columns as a vector holds.
+struct ColumnVectors {
+  ColumnFloats x, y, s;
+  hn::Mask<ColumnTag> is_before;  // an eye: has a depth to speak of
+
+  HWY_INLINE ColumnVectors(const CoverageGrid& grid, const MapPoints& p)
+      : x(turn(grid, 0, p.x, p.y, p.z)), y(turn(grid, 1, p.x, p.y, p.z)), s(turn(grid, 2, p.x, p.y, p.z)) {
+    const ColumnTag d;
+    is_before = hn::And(hn::Ge(s, hn::Set(d, 0x1p-60f)), hn::Le(s, hn::Set(d, 0x1p60f)));
+    if (!grid.map.is_eye) return;
+    s = hn::Div(hn::Set(d, 1.0f), s);
+    x = hn::Mul(x, s);
+    y = hn::Mul(y, s);
+  }
+};
+
+HWY_INLINE Vec3 center_of(const CoverageGrid& grid, ColumnRays::Kind kind) {
+  return kind == ColumnRays::Kind::kFrom ? Vec3{} : grid.map.center;
+}
+
 /// Finds the tiles of the block's first `count` rays.
 HWY_INLINE void place(const CoverageGrid& grid, ColumnRays::Kind kind, size_t count, Block& block) {
   const ColumnTag d;
   const hn::RebindToSigned<ColumnTag> di;
   const bool are_directions = kind == ColumnRays::Kind::kFrom;
-  const Vec3 center = are_directions ? Vec3{} : grid.map.center;
+  const Vec3 center = center_of(grid, kind);
   const ColumnFloats x_lo = hn::Set(d, grid.x_lo), y_lo = hn::Set(d, grid.y_lo),
                      scale = hn::Set(d, grid.tiles_per_unit);
   const auto last_x = hn::Set(di, static_cast<int32_t>(grid.tiles_x) - 1);
@@ -69,16 +100,9 @@ HWY_INLINE void place(const CoverageGrid& grid, ColumnRays::Kind kind, size_t co
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {
     ColumnFloats px, py, pz;
     hn::LoadInterleaved3(d, &block.points[i].x, px, py, pz);
-    px = hn::Sub(px, hn::Set(d, center.x));
-    py = hn::Sub(py, hn::Set(d, center.y));
-    pz = hn::Sub(pz, hn::Set(d, center.z));
-    ColumnFloats x = turn(grid, 0, px, py, pz), y = turn(grid, 1, px, py, pz), s = turn(grid, 2, px, py, pz);
-    auto inside = hn::And(hn::Ge(s, hn::Set(d, 0x1p-60f)), hn::Le(s, hn::Set(d, 0x1p60f)));  // of an eye
-    if (grid.map.is_eye) {
-      s = hn::Div(hn::Set(d, 1.0f), s);
-      x = hn::Mul(x, s);
-      y = hn::Mul(y, s);
-    }
+    const ColumnVectors columns(grid, MapPoints(center, px, py, pz));
+    const ColumnFloats x = columns.x, y = columns.y, s = columns.s;
+    auto inside = columns.is_before;
     if (!are_directions) inside = hn::And(hn::Ge(s, hn::Set(d, grid.s_lo)), hn::Le(s, hn::Set(d, grid.s_hi)));
     const ColumnFloats huge = hn::Set(d, 0x1p60f);
     const auto beside = hn::And(hn::And(inside, hn::Le(hn::Abs(x), huge)), hn::Le(hn::Abs(y), huge));
@@ -201,8 +225,10 @@ struct ColumnLanes {
     const size_t lane = 4 - kFourLanes;
     const auto depth_lane =
         hn::MaskFromVec(hn::BitCast(d, hn::Load(hn::RebindToUnsigned<FourTag>(), kDepthLane + lane)));
+    // The id beside it is a denormal number, which some processors multiply a hundred times slower than others.
+    const auto ahead = hn::IfThenElseZero(depth_lane, hn::Load(d, &triangle.margin + lane));
     auto& last = result.part[kFourParts - 1];
-    last = hn::Add(last, hn::IfThenElseZero(depth_lane, hn::Mul(hn::Load(d, &triangle.margin + lane), s)));
+    last = hn::Add(last, hn::Mul(ahead, s));
     return result;
   }
 };

@@ -1,5 +1,6 @@
-// Batches of rays and a coverage grid. Cells decide what they can; the others wait, are sorted by tile where there are
-// many, and meet their triangles, a few of them in flight at a time. Included once per instruction set.
+// Batches of rays and a coverage grid. Many are sorted by cell first, and those of a cell meet its triangles together.
+// Of others cells decide what they can; the rest wait, are sorted by tile where there are many, and meet their
+// triangles one by one, with a few in flight. Included once per instruction set.
 #if defined(RAYGRAIN_TRACE_KERNELS_COVERAGE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef RAYGRAIN_TRACE_KERNELS_COVERAGE_INL_H
 #undef RAYGRAIN_TRACE_KERNELS_COVERAGE_INL_H
@@ -8,75 +9,35 @@
 #endif
 
 #include <algorithm>
-#include <array>
 #include <vector>
 
-#include "trace/kernels/coverage_questions-inl.h"
+#include "trace/kernels/coverage_sort-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raygrain::HWY_NAMESPACE {
 namespace {
-
-/// How a batch is asked.
-enum class Order : uint8_t {
-  kAsGiven,        // few rays, a small grid, or neighbours that follow each other
-  kWaitingByTile,  // cells tell most answers: only the others are sorted
-  kPointsByTile,   // all are sorted first
-};
-
-struct SortedPoint {
-  Vec3 point;
-  uint32_t number;
-};
 
 /// Scratch space for one batch.
 struct Asking {
   Block block;             // NOLINT: filled as far as it is read
   Waiting few[kBlock];     // NOLINT
   uint32_t cells[kBlock];  // NOLINT
-  std::vector<SortedPoint> points;
+  SortedPoints sorted;
   std::vector<Waiting> waiting;
 };
 
-/// Where the groups of a counting sort begin, from counts that are one place up.
-inline void sum_up(std::vector<uint32_t>& begin) {
-  for (size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
+HWY_INLINE uint32_t cell_of(const CoverageGrid& grid, const Block& block, size_t i) {
+  return cell_at(grid.tiles[block.tile[i]], block.in_tile_x[i], block.in_tile_y[i]);
 }
 
-inline void sort_by_tile(std::vector<Waiting>& waiting, size_t tiles) {
-  std::vector<uint32_t> begin(tiles + 1);
-  for (const Waiting& w : waiting) ++begin[w.tile + 1];
-  sum_up(begin);
-  std::vector<Waiting> sorted(waiting.size());
-  for (const Waiting& w : waiting) sorted[begin[w.tile]++] = w;
-  waiting.swap(sorted);
-}
-
-/// Rays that have no tile come last.
-inline void sort_points(const CoverageGrid& grid, const ColumnBatch& batch, Asking& asking) {
-  const auto tiles = static_cast<uint32_t>(grid.tiles.size());
-  std::vector<uint32_t> begin(tiles + 2), tile_of(batch.count);
-  for (size_t first = 0; first < batch.count; first += kBlock) {
-    const size_t count = std::min<size_t>(kBlock, batch.count - first);
-    load(batch, first, count, asking.block);
-    place(grid, batch.rays.kind, count, asking.block);
-    for (size_t i = 0; i < count; ++i) {
-      tile_of[first + i] = std::min(asking.block.tile[i], tiles);
-      ++begin[tile_of[first + i] + 1];
-    }
-  }
-  sum_up(begin);
-  asking.points.resize(batch.count);
-  for (size_t i = 0; i < batch.count; ++i) {
-    const uint32_t number = batch.number(i);
-    asking.points[begin[tile_of[i]]++] = {batch.rays.points[number], number};
-  }
-}
-
-HWY_INLINE void load_sorted(const SortedPoint* points, size_t count, Block& block) {
+/// The cells of the block's rays; for those without a tile, that instead.
+HWY_INLINE void find_cells(const CoverageGrid& grid, size_t count, Asking& asking) {
   for (size_t i = 0; i < count; ++i) {
-    block.points[i] = points[i].point;
-    block.number[i] = points[i].number;
+    const uint32_t tile = asking.block.tile[i];
+    asking.cells[i] = tile;
+    if (tile >= kBeside) continue;
+    asking.cells[i] = cell_of(grid, asking.block, i);
+    hwy::Prefetch(grid.cells.data() + asking.cells[i]);
   }
 }
 
@@ -85,12 +46,7 @@ template <class Question>
 HWY_INLINE size_t ask_cells(const CoverageGrid& grid, ColumnRays::Kind kind, size_t count, const Question& question,
                             Asking& asking, std::vector<uint32_t>& rest) {
   const Block& block = asking.block;
-  for (size_t i = 0; i < count; ++i) {
-    const uint32_t tile = block.tile[i];
-    if (tile >= kBeside) continue;
-    asking.cells[i] = cell_at(grid.tiles[tile], block.in_tile_x[i], block.in_tile_y[i]);
-    hwy::Prefetch(grid.cells.data() + asking.cells[i]);
-  }
+  find_cells(grid, count, asking);
   size_t size = 0;
   for (size_t i = 0; i < count; ++i) {
     const uint32_t tile = block.tile[i], number = block.number[i];
@@ -118,50 +74,99 @@ HWY_INLINE size_t ask_cells(const CoverageGrid& grid, ColumnRays::Kind kind, siz
   return size;
 }
 
-/// From a few blocks: do most rays fall into the tile of the one before, and do cells tell most answers?
+/// Answers a block whose neighbours are often in one cell.
 template <class Question>
-Order find_order(const CoverageGrid& grid, const ColumnBatch& batch, const Question& question, Asking& asking) {
-  constexpr size_t kProbes = 4;
-  if (!batch.sorted || batch.count <= 2 * kProbes * kBlock) return Order::kAsGiven;
-  size_t same = 0, open = 0;
+HWY_INLINE void ask_runs(const CoverageGrid& grid, size_t count, const Question& question, Asking& asking,
+                         std::vector<uint32_t>& rest) {
+  constexpr size_t kAhead = 24;
+  const Block& block = asking.block;
+  find_cells(grid, count, asking);
+  for (size_t i = 0, end = 0; i < count; i = end) {
+    if (i + kAhead < count && block.tile[i + kAhead] < kBeside) fetch_list(grid, grid.cells[asking.cells[i + kAhead]]);
+    const uint32_t cell = asking.cells[i], tile = block.tile[i];
+    const size_t most = std::min(count, i + kPacket);
+    for (end = i + 1; end < most && asking.cells[end] == cell;) ++end;
+    if (tile < kBeside) {
+      question.answer_together(Packet(block, i, end - i), block.number + i, grid.cells[cell], grid.tiles[tile], rest);
+    } else if (tile == kBeside) {
+      for (size_t j = i; j < end; ++j) question.miss(block.number[j]);
+    } else {
+      rest.insert(rest.end(), block.number + i, block.number + end);
+    }
+  }
+}
+
+/// From a few blocks: do most rays fall into the cell or the tile of the one before, and do cells tell most answers?
+template <class Question>
+CoverageOrder find_order(const CoverageGrid& grid, const ColumnBatch& batch, const Question& question, Asking& asking) {
+  constexpr size_t kProbes = 4, kProbed = kProbes * kBlock, kRaysPerCellWhereTold = 16;
+  if (batch.by_cell && Question::kStartsOutside) return CoverageOrder::kByCell;
+  if (batch.count <= kProbed) return CoverageOrder::kAsGiven;
+  size_t same_cell = 0, same_tile = 0, placed = 0, open = 0;
   std::vector<uint32_t> unwanted;
   const CoverageCounters before = question.counters;
   for (size_t probe = 0; probe < kProbes; ++probe) {
     load(batch, (batch.count - kBlock) / kProbes * probe, kBlock, asking.block);
     place(grid, batch.rays.kind, kBlock, asking.block);
-    for (size_t i = 1; i < kBlock; ++i) same += asking.block.tile[i] == asking.block.tile[i - 1];
     open += ask_cells(grid, batch.rays.kind, kBlock, question, asking, unwanted);  // the answers are right
+    for (size_t i = 1; i < kBlock; ++i) {
+      const bool is_placed = asking.block.tile[i] < kBeside;
+      placed += is_placed;
+      same_cell += is_placed && asking.cells[i] == asking.cells[i - 1];
+      same_tile += asking.block.tile[i] == asking.block.tile[i - 1];
+    }
   }
   question.counters = before;  // the rays are asked again
-  if (2 * same > kProbes * kBlock) return Order::kAsGiven;
-  return 2 * open < kProbes * kBlock ? Order::kWaitingByTile : Order::kPointsByTile;
+  const bool are_told = 2 * open < kProbed;
+  if (batch.by_cell && (!are_told || batch.count >= kRaysPerCellWhereTold * grid.cells.size()))
+    return CoverageOrder::kByCell;
+  if (2 * same_tile > kProbed) return 2 * same_cell > placed ? CoverageOrder::kRuns : CoverageOrder::kAsGiven;
+  return are_told ? CoverageOrder::kOpenByTile : CoverageOrder::kByTile;
+}
+
+template <class Question>
+void ask_blocks(const CoverageGrid& grid, const ColumnBatch& batch, CoverageOrder order, const Question& question,
+                Asking& asking, std::vector<uint32_t>& rest) {
+  if (order == CoverageOrder::kOpenByTile) asking.waiting.reserve(batch.count);
+  for (size_t begin = 0; begin < batch.count; begin += kBlock) {
+    const size_t count = std::min<size_t>(kBlock, batch.count - begin);
+    if (order == CoverageOrder::kByTile)
+      load_sorted(asking.sorted.points.data() + begin, count, question, asking.block);
+    else
+      load(batch, begin, count, asking.block);
+    place(grid, batch.rays.kind, count, asking.block);
+    if (order == CoverageOrder::kRuns) {
+      ask_runs(grid, count, question, asking, rest);
+      continue;
+    }
+    const size_t size = ask_cells(grid, batch.rays.kind, count, question, asking, rest);
+    if (order == CoverageOrder::kOpenByTile)
+      asking.waiting.insert(asking.waiting.end(), asking.few, asking.few + size);
+    else
+      answer_all(grid, question, asking.few, size);
+  }
+  if (order != CoverageOrder::kOpenByTile) return;
+  sort_by_tile(asking.waiting, grid.tiles.size());
+  answer_all(grid, question, asking.waiting.data(), asking.waiting.size());
 }
 
 template <class Question>
 void ask(const CoverageGrid& grid, const ColumnBatch& batch, const Question& question, std::vector<uint32_t>& rest) {
   Asking asking;
-  const Order order = find_order(grid, batch, question, asking);
-  if (order == Order::kPointsByTile) sort_points(grid, batch, asking);
-  if (order == Order::kWaitingByTile) asking.waiting.reserve(batch.count);
+  const CoverageOrder order =
+      batch.order == CoverageOrder::kChosen ? find_order(grid, batch, question, asking) : batch.order;
   const size_t rest_begin = rest.size();
-  for (size_t begin = 0; begin < batch.count; begin += kBlock) {
-    const size_t count = std::min<size_t>(kBlock, batch.count - begin);
-    if (order == Order::kPointsByTile)
-      load_sorted(asking.points.data() + begin, count, asking.block);
-    else
-      load(batch, begin, count, asking.block);
-    place(grid, batch.rays.kind, count, asking.block);
-    const size_t size = ask_cells(grid, batch.rays.kind, count, question, asking, rest);
-    if (order == Order::kWaitingByTile)
-      asking.waiting.insert(asking.waiting.end(), asking.few, asking.few + size);
-    else
-      answer_all(grid, question, asking.few, size);
+  if (order == CoverageOrder::kByCell) {
+    const auto by_cell = [&](const Block& block, size_t i) { return cell_of(grid, block, i); };
+    sort_points(grid, batch, grid.cells.size(), by_cell, asking.block, asking.sorted);
+    ask_by_cell(grid, batch, question, asking.sorted, rest);
+  } else {
+    const auto by_tile = [](const Block& block, size_t i) { return block.tile[i]; };
+    if (order == CoverageOrder::kByTile)
+      sort_points(grid, batch, grid.tiles.size(), by_tile, asking.block, asking.sorted);
+    ask_blocks(grid, batch, order, question, asking, rest);
   }
-  if (order == Order::kPointsByTile) std::sort(rest.begin() + static_cast<std::ptrdiff_t>(rest_begin), rest.end());
-  if (order == Order::kWaitingByTile) {
-    sort_by_tile(asking.waiting, grid.tiles.size());
-    answer_all(grid, question, asking.waiting.data(), asking.waiting.size());
-  }
+  std::sort(rest.begin() + static_cast<std::ptrdiff_t>(rest_begin), rest.end());
   question.finish();
 }
 

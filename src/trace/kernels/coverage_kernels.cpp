@@ -28,7 +28,7 @@ void nearest(const CoverageGrid& grid, const ColumnBatch& batch, Hit* hits, std:
              CoverageCounters& counters) {
   CoverageCounters counts;
   counts.rays = batch.count;
-  Confirmations confirmations(batch.rays);
+  Confirmations confirmations(*grid.mesh, batch.rays, hits);
   ask(grid, batch, NearestHit{grid, batch, hits, counts, confirmations}, rest);
   counters.add(counts);
 }

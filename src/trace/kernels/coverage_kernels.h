@@ -28,12 +28,13 @@ struct ColumnRays {
   }
 };
 
-/// Which of them, and whether so many are asked that sorting them pays.
+/// Which of them.
 struct ColumnBatch {
   ColumnRays rays;
   const uint32_t* subset = nullptr;  // null: first, first + 1, ...
   uint32_t first = 0, count = 0;
-  bool sorted = false;
+  CoverageOrder order = CoverageOrder::kAsGiven;  // kChosen: find out, with `by_cell` or by tile
+  bool by_cell = false;
 
   uint32_t number(size_t i) const { return subset != nullptr ? subset[i] : first + static_cast<uint32_t>(i); }
 };

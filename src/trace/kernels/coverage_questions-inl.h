@@ -14,7 +14,7 @@
 
 #include "raygrain/triangle.h"
 
-#include "trace/kernels/columns-inl.h"
+#include "trace/kernels/coverage_packets-inl.h"
 #include "trace/kernels/pairs-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -30,6 +30,12 @@ struct Waiting {
   uint16_t code, spare;
 };
 static_assert(sizeof(Waiting) == 32);
+
+/// What a search of the cell reads first, before it is known that it is read.
+HWY_INLINE void fetch_list(const CoverageGrid& grid, const CoverageCell& cell) {
+  hwy::Prefetch(grid.references.data() + cell.first);
+  hwy::Prefetch(grid.triangles.data() + cell.top);
+}
 
 HWY_INLINE bool confirm(const CoverageGrid& grid, uint32_t id, const Ray& ray, Hit& hit) {
   const TriangleMesh& mesh = *grid.mesh;
@@ -80,6 +86,32 @@ struct AnyHit {
 
   HWY_INLINE void answer(const Waiting& w) const { flags[w.number] = is_hit(w) ? 1 : 0; }
 
+  /// Rays in one cell, by their numbers.
+  HWY_INLINE void answer_together(const Packet& packet, const uint32_t* numbers, const CoverageCell& cell,
+                                  const CoverageTile& tile, std::vector<uint32_t>&) const {
+    const ColumnFloats codes = codes_of(tile, packet.s);
+    const uint32_t hidden = packet.lanes & bits_of(hn::Lt(codes, broadcast_column(cell.cover)));
+    const uint32_t above = packet.lanes & bits_of(hn::Gt(codes, broadcast_column(cell.far))) & ~hidden;
+    const uint32_t free = has_no_near ? above : 0;
+    counters.covered += static_cast<uint64_t>(std::popcount(hidden));
+    counters.free += static_cast<uint64_t>(std::popcount(free));
+    const auto asks = [&](uint32_t id, size_t lane) {
+      ++counters.confirmations;
+      Hit hit;
+      return confirm(grid, id, batch.rays[numbers[lane]], hit);
+    };
+    const uint32_t open = packet.lanes & ~(hidden | free);
+    uint32_t met = hidden;
+    if (open != 0) met |= meet_any(grid, packet, cell, codes, open, asks, counters.triangle_tests);
+    for (const uint32_t id : grid.near_triangles)
+      for (uint32_t undecided = open & ~met; undecided != 0; undecided &= undecided - 1) {
+        const auto lane = static_cast<size_t>(std::countr_zero(undecided));
+        if (asks(id, lane)) met |= 1u << lane;
+      }
+    const auto count = static_cast<size_t>(std::popcount(packet.lanes));
+    for (size_t lane = 0; lane < count; ++lane) flags[numbers[lane]] = met >> lane & 1;
+  }
+
   HWY_INLINE bool is_hit(const Waiting& w) const {
     const auto asks = [&](uint32_t id) {
       ++counters.confirmations;
@@ -88,6 +120,7 @@ struct AnyHit {
     };
     return meets_any(grid, w, asks, counters.triangle_tests);
   }
+  HWY_INLINE void fetch(uint32_t number) const { hwy::Prefetch(flags + number); }
   HWY_INLINE void start(uint32_t) const {}
   HWY_INLINE void miss(uint32_t number) const { flags[number] = 0; }
   HWY_INLINE void finish() const {}
@@ -156,6 +189,7 @@ struct NearestHit {
   static constexpr bool kStartsOutside = true;
   static constexpr bool kJumps = true;
 
+  HWY_INLINE void fetch(uint32_t number) const { hwy::Prefetch(hits + number); }
   HWY_INLINE void start(uint32_t number) const { hits[number] = {}; }
   HWY_INLINE void miss(uint32_t number) const { hits[number] = {}; }
 
@@ -171,11 +205,44 @@ struct NearestHit {
     counters.triangle_tests += first_hits(grid, w.x, w.y, {w.first, w.count, w.tile}, tell);
   }
 
+  /// Rays in one cell, by their numbers. Those that do not start outside join the rest.
+  HWY_INLINE void answer_together(const Packet& packet, const uint32_t* numbers, const CoverageCell& cell,
+                                  const CoverageTile& tile, std::vector<uint32_t>& rest) const {
+    uint32_t lanes = packet.lanes;
+    if (batch.rays.kind != ColumnRays::Kind::kFrom) {
+      const uint32_t below = lanes & bits_of(hn::Le(codes_of(tile, packet.s), broadcast_column(cell.far)));
+      for (uint32_t bits = below; bits != 0; bits &= bits - 1) rest.push_back(numbers[std::countr_zero(bits)]);
+      lanes &= ~below;
+    }
+    for (uint32_t bits = lanes; bits != 0; bits &= bits - 1) hits[numbers[std::countr_zero(bits)]] = {};
+    const uint32_t list_size = (&cell)[1].first - cell.first;
+    if (list_size == 0 && has_no_near) {
+      counters.free += static_cast<uint64_t>(std::popcount(lanes));
+      return;
+    }
+    for (const uint32_t id : grid.near_triangles)
+      for (uint32_t bits = lanes; bits != 0; bits &= bits - 1) consider(id, numbers[std::countr_zero(bits)]);
+    FirstHits found;  // NOLINT: written by find_first
+    find_first(grid, packet, lanes, cell, tile, found, counters.triangle_tests);
+    counters.confirmations += static_cast<uint64_t>(std::popcount(found.one));
+    confirmations.add(packet, found.ids, numbers, found.one);
+    if (found.several == 0) return;
+    alignas(64) float x[kPacket], y[kPacket];
+    hn::Store(packet.x, ColumnTag(), x);
+    hn::Store(packet.y, ColumnTag(), y);
+    for (uint32_t bits = found.several; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<size_t>(std::countr_zero(bits));
+      const auto tell = [&](uint32_t id) { consider(id, numbers[lane]); };
+      first_hits(grid, x[lane], y[lane], {cell.first, list_size, static_cast<uint32_t>(&tile - grid.tiles.data())},
+                 tell);
+    }
+  }
+
   HWY_INLINE void consider(uint32_t id, uint32_t number) const {
     ++counters.confirmations;
-    if (confirmations.add(id, number)) finish();
+    confirmations.add(id, number);
   }
-  void finish() const { confirmations.decide(*grid.mesh, hits); }
+  void finish() const { confirmations.decide(); }
 };
 
 /// Answers waiting rays in order; what later ones will read is fetched meanwhile.

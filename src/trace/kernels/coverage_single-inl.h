@@ -35,12 +35,6 @@ inline bool find_cell(const CoverageGrid& grid, const SingleColumn& c, uint32_t&
   return true;
 }
 
-/// What a search of the cell reads first, before it is known that it is read.
-HWY_INLINE void fetch_list(const CoverageGrid& grid, const CoverageCell& cell) {
-  hwy::Prefetch(grid.references.data() + cell.first);
-  hwy::Prefetch(grid.triangles.data() + cell.top);
-}
-
 inline std::optional<bool> single_any(const CoverageGrid& grid, const SingleColumn& column, const Ray& ray) {
   uint32_t tile = 0, number = 0;
   if (is_beside(grid, column)) return false;

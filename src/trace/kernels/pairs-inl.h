@@ -9,14 +9,16 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 
 #include <hwy/cache_control.h>
 
 #include "raygrain/mesh.h"
 #include "raygrain/triangle.h"
 
+#include "trace/kernels/compress-inl.h"
 #include "trace/kernels/confirm-inl.h"
-#include "trace/kernels/coverage_kernels.h"
+#include "trace/kernels/coverage_packets-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raygrain::HWY_NAMESPACE {
@@ -27,95 +29,100 @@ HWY_INLINE Doubles largest_component(const DoubleVectors& a) {
 }
 
 /// Pairs of a ray (tmin = 0, tmax infinite) and a triangle that wait to be decided together. What they need from memory
-/// is fetched for all of them before the first is decided.
+/// is fetched for all of them before the first is decided. The rays share their start or their direction.
 class Confirmations {
  public:
-  /// Rays that share their start or their direction.
-  explicit Confirmations(const ColumnRays& rays) : rays_(rays) {
-    common_row_ = rays.kind == ColumnRays::Kind::kFrom ? 9 : 12;
-    for (size_t lane = 0; lane < kTogether; ++lane) put(common_row_, lane, rays.common);
+  /// Hits are merged into hits[number of the ray].
+  Confirmations(const TriangleMesh& mesh, const ColumnRays& rays, Hit* hits)
+      : mesh_(mesh), rays_(rays), hits_(hits), share_start_(rays.kind == ColumnRays::Kind::kFrom) {}
+
+  HWY_INLINE void add(uint32_t triangle, uint32_t ray) {
+    const Vec3 point = rays_.points[ray];
+    points_[0][queued_] = point.x;
+    points_[1][queued_] = point.y;
+    points_[2][queued_] = point.z;
+    triangles_[queued_] = triangle;
+    numbers_[queued_] = ray;
+    if (++queued_ >= kQueue) decide();
   }
 
-  /// True when it is full: decide() then, before the next.
-  HWY_INLINE bool add(uint32_t triangle, uint32_t ray) {
-    queue_[queued_++] = {triangle, ray};
-    return queued_ == kQueue;
+  /// Of as many rays as a packet has, those in the mask, with triangles of their own.
+  HWY_INLINE void add(const Packet& packet, const uint32_t* triangles, const uint32_t* rays, uint32_t lanes) {
+    const ColumnTag d;
+    const hn::RebindToUnsigned<ColumnTag> du;
+    const PacketMask mask = lanes_of(lanes);
+    const auto integer_mask = hn::RebindMask(du, mask);
+    hn::StoreU(compressed(d, packet.px, mask), d, points_[0] + queued_);
+    hn::StoreU(compressed(d, packet.py, mask), d, points_[1] + queued_);
+    hn::StoreU(compressed(d, packet.pz, mask), d, points_[2] + queued_);
+    hn::StoreU(compressed(du, hn::LoadU(du, triangles), integer_mask), du, triangles_ + queued_);
+    hn::StoreU(compressed(du, hn::LoadU(du, rays), integer_mask), du, numbers_ + queued_);
+    queued_ += static_cast<size_t>(std::popcount(lanes));
+    if (queued_ >= kQueue) decide();
   }
 
-  /// Merges the hits into hits[ray].
-  void decide(const TriangleMesh& mesh, Hit* hits) {
-    const std::array<uint32_t, 3>* triangles = mesh.triangles.data();
-    const Vec3* vertices = mesh.vertices.data();
-    for (size_t i = 0; i < queued_; ++i) {
-      hwy::Prefetch(triangles + queue_[i].triangle);
-      hwy::Prefetch(rays_.points + queue_[i].ray);
-      hwy::Prefetch(hits + queue_[i].ray);
-    }
+  void decide() {
+    if (queued_ == 0) return;
+    const std::array<uint32_t, 3>* corners = mesh_.triangles.data();
+    const Vec3* vertices = mesh_.vertices.data();
+    for (size_t i = 0; i < queued_; ++i) hwy::Prefetch(corners + triangles_[i]);
     for (size_t i = 0; i < queued_; ++i)
-      for (const uint32_t corner : triangles[queue_[i].triangle]) hwy::Prefetch(vertices + corner);
-    const size_t own_row = 21 - common_row_;
-    for (size_t i = 0; i < queued_; i += kTogether) {
-      const size_t count = std::min(kTogether, queued_ - i);
-      for (size_t lane = 0; lane < kTogether; ++lane) {
-        const Pair pair = queue_[i + std::min(lane, count - 1)];
-        const auto& corners = triangles[pair.triangle];
-        put(0, lane, vertices[corners[0]]);
-        put(3, lane, vertices[corners[1]]);
-        put(6, lane, vertices[corners[2]]);
-        put(own_row, lane, rays_.points[pair.ray]);
-      }
-      decide_together(queue_ + i, count, hits);
-    }
+      for (const uint32_t corner : corners[triangles_[i]]) hwy::Prefetch(vertices + corner);
+    for (size_t i = 0; i < queued_; ++i)
+      for (size_t corner = 0; corner < 3; ++corner) put(corner, i, vertices[corners[triangles_[i]][corner]]);
+    for (size_t first = 0; first < queued_; first += kDoubles) decide(first, std::min(kDoubles, queued_ - first));
     queued_ = 0;
   }
 
  private:
-  static constexpr size_t kQueue = 64, kTogether = 8;
-  struct Pair {
-    uint32_t triangle, ray;
-  };
+  static constexpr size_t kQueue = 64, kRoom = kQueue + 2 * kPacket;
 
-  HWY_INLINE void decide_together(const Pair* pairs, size_t count, Hit* hits) {
-    for (size_t first = 0; first < count; first += kDoubles) {
-      Verdicts verdicts;  // NOLINT: written by confirm
-      const DoubleVectors a = load(0, first), direction = load(12, first), ab = load(3, first) - a,
-                          ac = load(6, first) - a;
-      const Doubles size = max(largest_component(ab), largest_component(ac));
-      confirm<false>(
-          {direction, a - load(9, first), ab, ac, largest_component(direction), size, floats(0), floats(kInf)},
-          verdicts);
-      for (size_t i = 0; i < std::min(kDoubles, count - first); ++i) {
-        const Pair pair = pairs[first + i];
-        Hit hit{verdicts.t[i], verdicts.u[i], verdicts.v[i], pair.triangle};
-        const bool is_sure = (verdicts.hit >> i & 1) != 0;
-        if (!is_sure && ((verdicts.unsure >> i & 1) == 0 || !ask(first + i, hit))) continue;
-        Hit& best = hits[pair.ray];
-        if (is_nearer(hit, best)) best = hit;
-      }
+  HWY_INLINE void decide(size_t first, size_t count) {
+    const DoubleVectors own{load_doubles(points_[0] + first), load_doubles(points_[1] + first),
+                            load_doubles(points_[2] + first)};
+    const DoubleVectors common = doubles(rays_.common);
+    const DoubleVectors direction = share_start_ ? own : common, origin = share_start_ ? common : own;
+    const DoubleVectors a = corner(0, first), ab = corner(1, first) - a, ac = corner(2, first) - a;
+    const Doubles size = max(largest_component(ab), largest_component(ac));
+    Verdicts verdicts;  // NOLINT: written by confirm
+    confirm<false>({direction, a - origin, ab, ac, largest_component(direction), size, floats(0), floats(kInf)},
+                   verdicts);
+    alignas(64) Hit hits[kDoubles];  // NOLINT: written now, each as a whole: read so, it need not wait
+    hn::StoreInterleaved4(load_floats(verdicts.t).v, load_floats(verdicts.u).v, load_floats(verdicts.v).v,
+                          hn::BitCast(FloatTag(), hn::LoadU(hn::RebindToUnsigned<FloatTag>(), triangles_ + first)),
+                          FloatTag(), &hits[0].t);
+    for (size_t i = 0; i < count; ++i) {
+      const uint32_t number = numbers_[first + i];
+      const bool is_sure = (verdicts.hit >> i & 1) != 0;
+      if (!is_sure && ((verdicts.unsure >> i & 1) == 0 || !ask(number, first + i, hits[i]))) continue;
+      if (is_nearer(hits[i], hits_[number])) hits_[number] = hits[i];
     }
   }
 
-  HWY_INLINE void put(size_t row, size_t lane, Vec3 a) {
-    numbers_[row][lane] = a.x;
-    numbers_[row + 1][lane] = a.y;
-    numbers_[row + 2][lane] = a.z;
+  HWY_INLINE void put(size_t corner, size_t i, Vec3 a) {
+    corners_[corner][0][i] = a.x;
+    corners_[corner][1][i] = a.y;
+    corners_[corner][2][i] = a.z;
   }
-  Vec3 vector(size_t row, size_t lane) const {
-    return {numbers_[row][lane], numbers_[row + 1][lane], numbers_[row + 2][lane]};
+  HWY_INLINE DoubleVectors corner(size_t c, size_t first) const {
+    return {load_doubles(corners_[c][0] + first), load_doubles(corners_[c][1] + first),
+            load_doubles(corners_[c][2] + first)};
   }
-  HWY_INLINE DoubleVectors load(size_t row, size_t lane) const {
-    return {load_doubles(numbers_[row] + lane), load_doubles(numbers_[row + 1] + lane),
-            load_doubles(numbers_[row + 2] + lane)};
-  }
-  bool ask(size_t i, Hit& hit) const {
-    return intersect_triangle({vector(9, i), vector(12, i), 0, kInf}, vector(0, i), vector(3, i), vector(6, i), hit);
+  Vec3 vertex(size_t c, size_t i) const { return {corners_[c][0][i], corners_[c][1][i], corners_[c][2][i]}; }
+  bool ask(uint32_t number, size_t i, Hit& hit) const {
+    hit.triangle = triangles_[i];
+    return intersect_triangle(rays_[number], vertex(0, i), vertex(1, i), vertex(2, i), hit);
   }
 
-  alignas(64) float numbers_[15][kTogether];  // NOLINT: corners, origin, direction
-  Pair queue_[kQueue];                        // NOLINT: filled as far as queued_
-  size_t queued_ = 0;
-  size_t common_row_;
+  const TriangleMesh& mesh_;
   const ColumnRays& rays_;
+  Hit* hits_;
+  bool share_start_;
+  size_t queued_ = 0;
+  alignas(64) float points_[3][kRoom];      // NOLINT: filled as far as queued_
+  alignas(64) uint32_t triangles_[kRoom];   // NOLINT
+  alignas(64) uint32_t numbers_[kRoom];     // NOLINT
+  alignas(64) float corners_[3][3][kRoom];  // NOLINT
 };
 
 }  // namespace
