@@ -26,7 +26,7 @@ constexpr TreePrices kWidePrices{15, 20, 28, 25}, kColumnPrices{35, 22, 24, 110}
 constexpr double kWalk = 180;  // a local search: finding the area, and how far its region reaches
 /// Of a coverage: a ray, a triangle of its cell, an intersection; and how much longer a ray waits for a grid of twice
 /// the size, from a megabyte on.
-constexpr double kCell = 27, kCellTest = 11.5, kCellConfirmation = 75, kFarther = 5;
+constexpr double kCell = 27, kCellTest = 11.5, kCellConfirmation = 35, kFarther = 5;
 
 /// log2(1 + x), with lines between the powers of two: the library's logarithms differ.
 double octaves(double x) {

@@ -11,7 +11,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "raygrain/mesh.h"
 #include "raygrain/ray.h"
+#include "raygrain/triangle.h"
 
 #include "trace/kernels/doubles-inl.h"
 #include "trace/wide_tree.h"
@@ -89,6 +91,41 @@ HWY_INLINE void confirm(const Ray& ray, const WideLeaf& leaf, float size, size_t
   confirm<kSure>({doubles(d), a - doubles(ray.origin), corner(1) - a, corner(2) - a, doubles(length), doubles(size),
                   floats(ray.tmin), floats(ray.tmax)},
                  verdicts);
+}
+
+HWY_INLINE Doubles largest_component(const DoubleVectors& a) {
+  return max(max(absolute(a.x), absolute(a.y)), absolute(a.z));
+}
+
+/// The hits that the verdicts speak of, written as wholes: reading one of them need not wait for its parts.
+HWY_INLINE void to_hits(const Verdicts& verdicts, const uint32_t* triangles, Hit* hits) {
+  const FloatTag d;
+  const auto ids = hn::BitCast(d, hn::LoadU(hn::RebindToUnsigned<FloatTag>(), triangles));
+  hn::StoreInterleaved4(load_floats(verdicts.t).v, load_floats(verdicts.u).v, load_floats(verdicts.v).v, ids, d,
+                        &hits[0].t);
+}
+
+/// One ray against one triangle, as intersect_triangle but for hit.triangle, which it sets.
+HWY_INLINE bool confirm(const Ray& ray, const TriangleMesh& mesh, uint32_t id, Hit& hit) {
+  const Vec3 a = mesh.vertex(id, 0), b = mesh.vertex(id, 1), c = mesh.vertex(id, 2);
+  const DoubleVectors corner = doubles(a), ab = doubles(b) - corner, ac = doubles(c) - corner,
+                      direction = doubles(ray.direction);
+  const Doubles size = max(largest_component(ab), largest_component(ac));
+  Verdicts verdicts;  // NOLINT: written by confirm
+  confirm<false>({direction, corner - doubles(ray.origin), ab, ac, largest_component(direction), size, floats(ray.tmin),
+                  floats(ray.tmax)},
+                 verdicts);
+  uint32_t ids[kDoubles];
+  for (uint32_t& i : ids) i = id;
+  alignas(64) Hit hits[kDoubles];  // NOLINT: written by to_hits
+  to_hits(verdicts, ids, hits);
+  if ((verdicts.unsure & 1) != 0) [[unlikely]] {
+    hit.triangle = id;
+    return intersect_triangle(ray, a, b, c, hit);
+  }
+  if ((verdicts.hit & 1) == 0) return false;
+  hit = hits[0];
+  return true;
 }
 
 }  // namespace

@@ -37,13 +37,6 @@ HWY_INLINE void fetch_list(const CoverageGrid& grid, const CoverageCell& cell) {
   hwy::Prefetch(grid.triangles.data() + cell.top);
 }
 
-HWY_INLINE bool confirm(const CoverageGrid& grid, uint32_t id, const Ray& ray, Hit& hit) {
-  const TriangleMesh& mesh = *grid.mesh;
-  if (!intersect_triangle(ray, mesh.vertex(id, 0), mesh.vertex(id, 1), mesh.vertex(id, 2), hit)) return false;
-  hit.triangle = id;
-  return true;
-}
-
 /// Any triangle ahead of the column? asks(id) decides where margins do not.
 template <class Asks>
 HWY_INLINE bool meets_any(const CoverageGrid& grid, const Waiting& w, const Asks& asks, uint64_t& tests) {
@@ -98,7 +91,7 @@ struct AnyHit {
     const auto asks = [&](uint32_t id, size_t lane) {
       ++counters.confirmations;
       Hit hit;
-      return confirm(grid, id, batch.rays[numbers[lane]], hit);
+      return confirm(batch.rays[numbers[lane]], *grid.mesh, id, hit);
     };
     const uint32_t open = packet.lanes & ~(hidden | free);
     uint32_t met = hidden;
@@ -116,7 +109,7 @@ struct AnyHit {
     const auto asks = [&](uint32_t id) {
       ++counters.confirmations;
       Hit hit;
-      return confirm(grid, id, batch.rays[w.number], hit);
+      return confirm(batch.rays[w.number], *grid.mesh, id, hit);
     };
     return meets_any(grid, w, asks, counters.triangle_tests);
   }

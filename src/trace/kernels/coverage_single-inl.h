@@ -51,7 +51,7 @@ inline std::optional<bool> single_any(const CoverageGrid& grid, const SingleColu
       grid, w,
       [&](uint32_t id) {
         Hit hit;
-        return confirm(grid, id, ray, hit);
+        return confirm(ray, *grid.mesh, id, hit);
       },
       tests);
 }
@@ -66,7 +66,7 @@ inline std::optional<Hit> single_nearest(const CoverageGrid& grid, const SingleC
   Hit best;
   const auto consider = [&](uint32_t id) {
     Hit hit;
-    if (confirm(grid, id, ray, hit) && is_nearer(hit, best)) best = hit;
+    if (confirm(ray, *grid.mesh, id, hit) && is_nearer(hit, best)) best = hit;
   };
   for (const uint32_t id : grid.near_triangles) consider(id);
   first_hits(grid, column.x, column.y, {cell->first, cell[1].first - cell->first, tile}, consider);

@@ -24,10 +24,6 @@ HWY_BEFORE_NAMESPACE();
 namespace raygrain::HWY_NAMESPACE {
 namespace {
 
-HWY_INLINE Doubles largest_component(const DoubleVectors& a) {
-  return max(max(absolute(a.x), absolute(a.y)), absolute(a.z));
-}
-
 /// Pairs of a ray (tmin = 0, tmax infinite) and a triangle that wait to be decided together. What they need from memory
 /// is fetched for all of them before the first is decided. The rays share their start or their direction.
 class Confirmations {
@@ -87,10 +83,8 @@ class Confirmations {
     Verdicts verdicts;  // NOLINT: written by confirm
     confirm<false>({direction, a - origin, ab, ac, largest_component(direction), size, floats(0), floats(kInf)},
                    verdicts);
-    alignas(64) Hit hits[kDoubles];  // NOLINT: written now, each as a whole: read so, it need not wait
-    hn::StoreInterleaved4(load_floats(verdicts.t).v, load_floats(verdicts.u).v, load_floats(verdicts.v).v,
-                          hn::BitCast(FloatTag(), hn::LoadU(hn::RebindToUnsigned<FloatTag>(), triangles_ + first)),
-                          FloatTag(), &hits[0].t);
+    alignas(64) Hit hits[kDoubles];  // NOLINT: written by to_hits
+    to_hits(verdicts, triangles_ + first, hits);
     for (size_t i = 0; i < count; ++i) {
       const uint32_t number = numbers_[first + i];
       const bool is_sure = (verdicts.hit >> i & 1) != 0;
