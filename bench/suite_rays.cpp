@@ -22,7 +22,7 @@ namespace raygrain::bench {
 namespace {
 
 constexpr int kRounds = 5;
-constexpr int kTurns = 20;
+constexpr int kTurns = 20, kTurnedRounds = 15;
 
 /// The accelerators of this suite.
 AcceleratorOptions bench_options() {
@@ -78,6 +78,15 @@ Specialised specialise(const TriangleMesh& mesh, const Accelerator& global, doub
   const size_t bytes = accelerator.memory_bytes() - global.memory_bytes();
   return {std::move(accelerator), seconds, bytes};
 }
+
+/// A scene as it was turned, or under another sun.
+struct Turned {
+  std::string name;
+  int turn = 0;
+  StructuredRays rays;
+  Accelerator global;
+  Specialised ours;
+};
 
 class RaysSuite {
  public:
@@ -198,7 +207,9 @@ class RaysSuite {
 
   /// The scene and its sun turned together, and the fixed scene under as many suns: what obliqueness costs.
   void run_turned();
-  void measure_turned(const std::string& name, int turn, const TriangleMesh& mesh, Vec3 light);
+  Turned turn_to(const std::string& name, int turn, const TriangleMesh& mesh, Vec3 light) const;
+  void measure_turned(const std::vector<Turned>& all);
+  void report_turned(const Turned& t, double our_seconds, double global_seconds);
 
   const BenchScene& scene_;
   const Settings& settings_;
@@ -230,38 +241,57 @@ constexpr Vec3 kTurnedSun{-0.42f, -0.85f, 0.31f};
 
 void RaysSuite::run_turned() {
   const int turns = settings_.quick ? 5 : kTurns;
+  std::vector<Turned> all;
   for (int turn = 0; turn < turns; ++turn) {
     const Rotation rotation(turn);
     TriangleMesh turned = scene_.mesh;
     for (Vec3& v : turned.vertices) v = rotation(v);
-    measure_turned("turned", turn, turned, rotation(kTurnedSun));
-    Vec3 light = rotation(kTurnedSun);
-    light.y = -std::abs(light.y) - 0.05f;  // from above
-    measure_turned("directions", turn, scene_.mesh, light);
+    all.push_back(turn_to("turned", turn, turned, rotation(kTurnedSun)));
   }
+  measure_turned(all);
+  all.clear();
+  for (int turn = 0; turn < turns; ++turn) {
+    Vec3 light = Rotation(turn)(kTurnedSun);
+    light.y = -std::abs(light.y) - 0.05f;  // from above
+    all.push_back(turn_to("directions", turn, scene_.mesh, light));
+  }
+  measure_turned(all);
 }
 
-void RaysSuite::measure_turned(const std::string& name, int turn, const TriangleMesh& mesh, Vec3 light) {
-  const StructuredRays rays = sun_rays(mesh, light, settings_.quick ? 50000 : 100000);
-  const Accelerator global(mesh, {}, bench_options());
-  const Specialised ours = specialise(mesh, global, 0, rays.areas);
-  std::vector<Contestant> all;
-  all.push_back(contestant(rays, [&](Answers& a) { trace_batch(ours.accelerator, rays, a, 1); }));
-  all.push_back(contestant(rays, [&](Answers& a) { trace_array(global, rays, a, 1); }));
-  race_whole(all, kRounds, 1);
+Turned RaysSuite::turn_to(const std::string& name, int turn, const TriangleMesh& mesh, Vec3 light) const {
+  StructuredRays rays = sun_rays(mesh, light, settings_.quick ? 50000 : 100000);
+  Accelerator global(mesh, {}, bench_options());
+  Specialised ours = specialise(mesh, global, 0, rays.areas);
+  return {name, turn, std::move(rays), std::move(global), std::move(ours)};
+}
+
+/// All take turns, so that a machine that becomes slower meanwhile does not set them apart.
+void RaysSuite::measure_turned(const std::vector<Turned>& all) {
+  std::vector<Contestant> contestants;
+  for (const Turned& t : all) {
+    contestants.push_back(contestant(t.rays, [&](Answers& a) { trace_batch(t.ours.accelerator, t.rays, a, 1); }));
+    contestants.push_back(contestant(t.rays, [&](Answers& a) { trace_array(t.global, t.rays, a, 1); }));
+  }
+  race_whole(contestants, kTurnedRounds, 1);
+  for (size_t i = 0; i < all.size(); ++i)
+    report_turned(all[i], contestants[2 * i].seconds, contestants[2 * i + 1].seconds);
+}
+
+void RaysSuite::report_turned(const Turned& t, double our_seconds, double global_seconds) {
+  const StructuredRays& rays = t.rays;
   Row row = new_row(rays, 1);
-  row.rays = name;
+  row.rays = t.name;
   row.api = "batch";
-  row.turn = turn;
-  row.raygrain_mrays = mrays(rays, all[0].seconds);
-  row.global_mrays = mrays(rays, all[1].seconds);
-  row.memory_bytes = ours.memory_bytes;
+  row.turn = t.turn;
+  row.raygrain_mrays = mrays(rays, our_seconds);
+  row.global_mrays = mrays(rays, global_seconds);
+  row.memory_bytes = t.ours.memory_bytes;
   CoverageCounters counters;
   std::vector<uint32_t> rest;
   Answers answers(rays.set.rays.size());
-  ours.accelerator.coverages()[0].occluded(rays.points, rays.common, answers.flags, rest, {}, 1, &counters);
+  t.ours.accelerator.coverages()[0].occluded(rays.points, rays.common, answers.flags, rest, {}, 1, &counters);
   AcceleratorCounters world;
-  global.occluded(rays.set.rays, answers.flags, 1, &world);
+  t.global.occluded(rays.set.rays, answers.flags, 1, &world);
   const auto per_ray = [&](uint64_t n) { return static_cast<double>(n) / static_cast<double>(rays.set.rays.size()); };
   // A cell counts as a node; the paper's constants.
   row.cost = 2 + 1.2 * per_ray(counters.triangle_tests);

@@ -30,38 +30,49 @@ class Confirmations {
     values_[kMax][count_] = ray.tmax;
     index_[count_] = index;
     triangle_[count_] = leaf.id(lane);
-    if (++count_ == kDoubles) decide();
+    if (++count_ == kCapacity) decide();
   }
 
   /// Decides all that wait.
   void decide() {
-    const DoubleVectors direction = load(kDirection), a = load(kCorners);
-    const Doubles length = max(max(absolute(direction.x), absolute(direction.y)), absolute(direction.z));
-    Verdicts verdicts;
-    confirm<false>({direction, a - load(kOrigin), load(kCorners + 3) - a, load(kCorners + 6) - a, length,
-                    load_doubles(values_[kSize]), load_floats(values_[kMin]), load_floats(values_[kMax])},
-                   verdicts);
-    for (size_t i = 0; i < count_; ++i) {
-      Hit hit{verdicts.t[i], verdicts.u[i], verdicts.v[i], triangle_[i]};
-      const bool is_hit = (verdicts.unsure >> i & 1) != 0 ? decide_alone(i, hit) : (verdicts.hit >> i & 1) != 0;
-      Hit& best = hits_[index_[i]];
-      if (is_hit && is_nearer(hit, best)) best = hit;
-    }
+    for (size_t first = 0; first < count_; first += kDoubles) decide(first, std::min(kDoubles, count_ - first));
     count_ = 0;
   }
 
  private:
   enum : size_t { kOrigin = 0, kDirection = 3, kCorners = 6, kSize = 15, kMin, kMax, kValues };
 
+  /// Several vectors full: what was stored a number at a time need not be awaited when it is loaded.
+  static constexpr size_t kCapacity = 4 * kDoubles;
+
+  HWY_INLINE void decide(size_t first, size_t count) {
+    const DoubleVectors direction = load(kDirection, first), a = load(kCorners, first);
+    Verdicts verdicts;  // NOLINT: written by confirm
+    confirm<false>({direction, a - load(kOrigin, first), load(kCorners + 3, first) - a, load(kCorners + 6, first) - a,
+                    largest_component(direction), load_doubles(values_[kSize] + first),
+                    load_floats(values_[kMin] + first), load_floats(values_[kMax] + first)},
+                   verdicts);
+    alignas(64) Hit hits[kDoubles];  // NOLINT: written by to_hits
+    to_hits(verdicts, triangle_ + first, hits);
+    for (size_t i = 0; i < count; ++i) {
+      const bool is_hit =
+          (verdicts.unsure >> i & 1) != 0 ? decide_alone(first + i, hits[i]) : (verdicts.hit >> i & 1) != 0;
+      Hit& best = hits_[index_[first + i]];
+      if (is_hit && is_nearer(hits[i], best)) best = hits[i];
+    }
+  }
+
   HWY_INLINE void set(size_t i, Vec3 a) {
     values_[i][count_] = a.x;
     values_[i + 1][count_] = a.y;
     values_[i + 2][count_] = a.z;
   }
-  HWY_INLINE DoubleVectors load(size_t i) const {
-    return {load_doubles(values_[i]), load_doubles(values_[i + 1]), load_doubles(values_[i + 2])};
+  HWY_INLINE DoubleVectors load(size_t i, size_t first) const {
+    return {load_doubles(values_[i] + first), load_doubles(values_[i + 1] + first),
+            load_doubles(values_[i + 2] + first)};
   }
   HWY_NOINLINE bool decide_alone(size_t lane, Hit& hit) const {
+    hit.triangle = triangle_[lane];
     const auto corner = [&](size_t i) {
       return Vec3{values_[kCorners + i][lane], values_[kCorners + i + 1][lane], values_[kCorners + i + 2][lane]};
     };
@@ -71,9 +82,9 @@ class Confirmations {
   const Ray* rays_;
   Hit* hits_;
   size_t count_ = 0;
-  float values_[kValues][kDoubles] = {};
-  size_t index_[kDoubles];
-  uint32_t triangle_[kDoubles];
+  alignas(64) float values_[kValues][kCapacity] = {};
+  alignas(64) uint32_t triangle_[kCapacity] = {};
+  size_t index_[kCapacity];
 };
 
 class NearestStream {
