@@ -42,7 +42,7 @@ struct CoverageCounters {
   uint64_t covered = 0;         // hits told by their cell alone
   uint64_t free = 0;            // misses told by their cell alone
   uint64_t triangle_tests = 0;  // of the float filter
-  uint64_t confirmations = 0;   // calls of intersect_triangle
+  uint64_t confirmations = 0;   // triangles decided by more than floats
 
   void add(const CoverageCounters& other);
 };

@@ -25,8 +25,8 @@ struct TreePrices {
 constexpr TreePrices kWidePrices{15, 20, 28, 25}, kColumnPrices{35, 22, 24, 110}, kConePrices{55, 24, 38, 110};
 constexpr double kWalk = 180;  // a local search: finding the area, and how far its region reaches
 /// Of a coverage: a ray, a triangle of its cell, an intersection; and how much longer a ray waits for a grid of twice
-/// the size, from a megabyte on.
-constexpr double kCell = 27, kCellTest = 11.5, kCellConfirmation = 35, kFarther = 5;
+/// the size, from a megabyte on, and from 15 megabytes on.
+constexpr double kCell = 27, kCellTest = 11.5, kCellConfirmation = 35, kFarther = 5, kMuchFarther = 8;
 
 /// log2(1 + x), with lines between the powers of two: the library's logarithms differ.
 double octaves(double x) {
@@ -138,8 +138,8 @@ class Pricing {
     const double sum = kCellTest * static_cast<double>(c.triangle_tests) +
                        kCellConfirmation * static_cast<double>(c.confirmations) +
                        global * static_cast<double>(rest.size());
-    const double megabytes = static_cast<double>(coverage.memory_bytes()) * 0x1p-20;
-    return kCell + kFarther * octaves(megabytes) + per_ray(sum, rays.size());
+    const double size = octaves(static_cast<double>(coverage.memory_bytes()) * 0x1p-20);
+    return kCell + kFarther * size + kMuchFarther * std::max(0.0, size - 4) + per_ray(sum, rays.size());
   }
 
   const PricedParts& parts_;

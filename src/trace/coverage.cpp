@@ -48,16 +48,27 @@ void pass_on(size_t count, std::span<const uint32_t> subset, std::vector<uint32_
   for (size_t i = 0; i < count; ++i) rest.push_back(static_cast<uint32_t>(i));
 }
 
-/// What suits `rays` in one call, of which each worker may take `share`.
-ColumnBatch batch_of(const CoverageGrid& grid, CoverageOrder order, const ColumnRays& rays, size_t count,
-                     size_t share) {
+/// How many rays of a batch each task takes, and in which order.
+struct BatchPlan {
+  size_t grain = 0;
   ColumnBatch batch;
-  batch.rays = rays;
-  batch.order = order;
-  batch.by_cell = std::min(share, kMostRaysPerTaskByCell) >= kRaysPerCell * grid.cells.size();
-  const bool by_tile = count >= kRaysPerTile * grid.tiles.size() && bytes_of(grid) > kSmallGrid;
-  if (order == CoverageOrder::kChosen && !batch.by_cell && !by_tile) batch.order = CoverageOrder::kAsGiven;
-  return batch;
+};
+
+BatchPlan plan_batch(const CoverageGrid& grid, CoverageOrder order, size_t count, unsigned threads) {
+  const size_t workers = threads == 0 ? default_threads() : std::min(threads, default_threads());
+  const auto grain_of = [&](size_t most) {
+    const size_t turns = (count + workers * most - 1) / (workers * most);
+    return std::max((count + workers * turns - 1) / (workers * turns), kLeastRaysPerTask);
+  };
+  BatchPlan plan;
+  const size_t large = grain_of(kMostRaysPerTaskByCell);
+  plan.batch.order = order;
+  plan.batch.count = static_cast<uint32_t>(count);
+  plan.batch.by_cell = std::min(count, large) >= kRaysPerCell * grid.cells.size();
+  plan.batch.by_tile = count >= kRaysPerTile * grid.tiles.size() && bytes_of(grid) > kSmallGrid;
+  const bool is_by_cell = order == CoverageOrder::kByCell || (order == CoverageOrder::kChosen && plan.batch.by_cell);
+  plan.grain = is_by_cell ? large : grain_of(kMostRaysPerTask);
+  return plan;
 }
 
 /// Runs ask(batch, rest, counters) over parts of the rays.
@@ -67,30 +78,23 @@ void in_parts(const CoverageGrid& grid, CoverageOrder order, const ColumnRays& r
               CoverageCounters* counters, const Ask& ask) {
   if (points > 0xffffffffu) throw Error(ErrorCode::kLimit, "Coverage", "more than 2^32 rays in one call");
   const size_t count = subset.empty() ? points : subset.size();
-  const size_t workers = count <= kLeastRaysPerTask ? 1 : (threads == 0 ? default_threads() : threads);
-  ColumnBatch all = batch_of(grid, order, rays, count, (count + workers - 1) / workers);
-  all.subset = subset.empty() ? nullptr : subset.data();
-  all.count = static_cast<uint32_t>(count);
-  if (count <= kLeastRaysPerTask) {
-    CoverageCounters unwanted;
-    return ask(all, rest, counters != nullptr ? *counters : unwanted);
-  }
-  const size_t most = all.by_cell ? kMostRaysPerTaskByCell : kMostRaysPerTask;
-  const size_t turns = (count + workers * most - 1) / (workers * most);
-  const size_t grain = std::max((count + workers * turns - 1) / (workers * turns), kLeastRaysPerTask);
-  const size_t parts = (count + grain - 1) / grain;
+  if (count == 0) return;
+  BatchPlan plan = plan_batch(grid, order, count, threads);
+  plan.batch.rays = rays;
+  plan.batch.subset = subset.empty() ? nullptr : subset.data();
+  CoverageCounters unwanted;
+  CoverageCounters& sum = counters != nullptr ? *counters : unwanted;
+  if (count <= plan.grain) return ask(plan.batch, rest, sum);
+  const size_t parts = (count + plan.grain - 1) / plan.grain;
   std::vector<std::vector<uint32_t>> rests(parts);
   std::vector<CoverageCounters> counts(parts);
-  parallel_for(count, grain, threads, [&](size_t begin, size_t end) {
-    ColumnBatch batch = all;
-    if (all.subset != nullptr) batch.subset += begin;
-    batch.first = static_cast<uint32_t>(begin);
-    batch.count = static_cast<uint32_t>(end - begin);
-    ask(batch, rests[begin / grain], counts[begin / grain]);
+  parallel_for(count, plan.grain, threads, [&](size_t begin, size_t end) {
+    const size_t part = begin / plan.grain;
+    ask(plan.batch.part(begin, end), rests[part], counts[part]);
   });
   for (size_t i = 0; i < parts; ++i) {
     rest.insert(rest.end(), rests[i].begin(), rests[i].end());
-    if (counters != nullptr) counters->add(counts[i]);
+    sum.add(counts[i]);
   }
 }
 

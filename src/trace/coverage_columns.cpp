@@ -23,7 +23,7 @@ int sense_of(const CoverageGrid& grid, Vec3 direction) {
   return sense_of(turn(grid.map, to_double(direction)));
 }
 
-/// Parallel rays, in double precision: better than the errors that the grid allows for.
+// In double precision: better than the errors that the grid allows for.
 bool column_along(const CoverageGrid& grid, const Ray& ray, int wanted, SingleColumn& column) {
   const Vec3d direction = turn(grid.map, to_double(ray.direction));
   if (sense_of(direction) != wanted) return false;

@@ -16,6 +16,7 @@ bool column_along(const CoverageGrid& grid, const Ray& ray, int wanted, SingleCo
 /// A ray whose line passes the eye and that ends there, up to rounding.
 bool column_to_eye(const CoverageGrid& grid, const Ray& ray, SingleColumn& column);
 
+/// A ray that starts at the eye itself.
 bool column_from_eye(const CoverageGrid& grid, const Ray& ray, SingleColumn& column);
 
 }  // namespace raygrain

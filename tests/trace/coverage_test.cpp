@@ -172,12 +172,10 @@ void for_families(uint64_t seeds, const Body& body) {
     }
 }
 
-/// Another order each time.
-CoverageOptions some_options(uint64_t seed, Isa isa) {
-  static size_t turn = 0;
+CoverageOptions some_options(uint64_t seed, Isa isa, Random& random) {
   const float cells[] = {0.25f, 4, 64};
   const uint32_t triangles[] = {256, 16, 4};
-  const CoverageOrder order = test::kCoverageOrders[turn++ % std::size(test::kCoverageOrders)];
+  const CoverageOrder order = test::kCoverageOrders[random.below(std::size(test::kCoverageOrders))];
   return {cells[seed % 3], triangles[(seed / 3 + seed) % 3], isa, order, 1};
 }
 
@@ -195,7 +193,7 @@ TEST(Coverage, AgreesWithTheOracleAlongADirection) {
       const std::vector<Hit> expected_hits = oracle_hits(*mesh, away);
       for (const Isa isa : supported_isas()) {
         SCOPED_TRACE(name(isa));
-        const Coverage coverage(mesh, area, some_options(seed, isa));
+        const Coverage coverage(mesh, area, some_options(seed, isa, random));
         std::vector<uint32_t> rest;
         std::vector<uint8_t> flags(origins.size());
         coverage.occluded(origins, -light, flags, rest);
@@ -259,7 +257,7 @@ TEST(Coverage, AgreesWithTheOracleAboutAPoint) {
       for (const InfluenceArea& area : point_light_areas("lamp", eye, box))
         for (const Isa isa : supported_isas()) {
           SCOPED_TRACE(area.name + ", " + name(isa));
-          const Coverage coverage(mesh, area, some_options(seed, isa));
+          const Coverage coverage(mesh, area, some_options(seed, isa, random));
           std::vector<uint32_t> rest;
           std::vector<uint8_t> flags(points.size());
           coverage.occluded_towards(points, eye, flags, rest);

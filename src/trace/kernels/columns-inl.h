@@ -21,16 +21,21 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr size_t kBlock = 128;
 constexpr size_t kBlockRoom = kBlock + 16;  // for vectors that begin anywhere in it
+constexpr size_t kMostCandidates = 8;       // for first hits, that wait at once
 constexpr uint32_t kOutside = 0xffffffffu;  // not for this grid to answer
 constexpr uint32_t kBeside = 0xfffffffeu;   // where nothing is
 
-/// Columns of a block of rays.
+/// Columns of a block of rays. What vectors read beyond the last is zero: garbage may be denormal, and slow.
 struct Block {
   alignas(64) float x[kBlockRoom], y[kBlockRoom], s[kBlockRoom];
   alignas(64) float in_tile_x[kBlock], in_tile_y[kBlock];  // place in the tile, in [0, 1) up to rounding
   alignas(64) uint32_t tile[kBlock];                       // or one of the above
-  uint32_t number[kBlock];                                 // of the ray
+  uint32_t number[kBlockRoom];                             // of the ray
   Vec3 points[kBlockRoom];
+
+  Block() {  // NOLINT: the others are written before they are read
+    for (size_t i = kBlock; i < kBlockRoom; ++i) x[i] = y[i] = s[i] = 0, number[i] = 0, points[i] = {};
+  }
 };
 
 using ColumnTag = hn::CappedTag<float, 8>;

@@ -10,6 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
 
 #include "raygrain/mesh.h"
 #include "raygrain/ray.h"
@@ -99,13 +101,16 @@ HWY_INLINE Doubles largest_component(const DoubleVectors& a) {
 
 /// The hits that the verdicts speak of, written as wholes: reading one of them need not wait for its parts.
 HWY_INLINE void to_hits(const Verdicts& verdicts, const uint32_t* triangles, Hit* hits) {
+  static_assert(sizeof(Hit) == 16 && offsetof(Hit, u) == 4 && offsetof(Hit, v) == 8 && offsetof(Hit, triangle) == 12);
   const FloatTag d;
   const auto ids = hn::BitCast(d, hn::LoadU(hn::RebindToUnsigned<FloatTag>(), triangles));
+  alignas(64) float numbers[4 * kDoubles];
   hn::StoreInterleaved4(load_floats(verdicts.t).v, load_floats(verdicts.u).v, load_floats(verdicts.v).v, ids, d,
-                        &hits[0].t);
+                        numbers);
+  std::memcpy(hits, numbers, sizeof numbers);
 }
 
-/// One ray against one triangle, as intersect_triangle but for hit.triangle, which it sets.
+/// One ray against one triangle, as intersect_triangle, and the triangle's number.
 HWY_INLINE bool confirm(const Ray& ray, const TriangleMesh& mesh, uint32_t id, Hit& hit) {
   const Vec3 a = mesh.vertex(id, 0), b = mesh.vertex(id, 1), c = mesh.vertex(id, 2);
   const DoubleVectors corner = doubles(a), ab = doubles(b) - corner, ac = doubles(c) - corner,
@@ -120,8 +125,9 @@ HWY_INLINE bool confirm(const Ray& ray, const TriangleMesh& mesh, uint32_t id, H
   alignas(64) Hit hits[kDoubles];  // NOLINT: written by to_hits
   to_hits(verdicts, ids, hits);
   if ((verdicts.unsure & 1) != 0) [[unlikely]] {
+    if (!intersect_triangle(ray, a, b, c, hit)) return false;
     hit.triangle = id;
-    return intersect_triangle(ray, a, b, c, hit);
+    return true;
   }
   if ((verdicts.hit & 1) == 0) return false;
   hit = hits[0];

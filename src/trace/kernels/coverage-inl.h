@@ -101,7 +101,7 @@ template <class Question>
 CoverageOrder find_order(const CoverageGrid& grid, const ColumnBatch& batch, const Question& question, Asking& asking) {
   constexpr size_t kProbes = 4, kProbed = kProbes * kBlock, kRaysPerCellWhereTold = 16;
   if (batch.by_cell && Question::kStartsOutside) return CoverageOrder::kByCell;
-  if (batch.count <= kProbed) return CoverageOrder::kAsGiven;
+  if (batch.count <= kProbed || !(batch.by_cell || batch.by_tile)) return CoverageOrder::kAsGiven;
   size_t same_cell = 0, same_tile = 0, placed = 0, open = 0;
   std::vector<uint32_t> unwanted;
   const CoverageCounters before = question.counters;
@@ -120,14 +120,24 @@ CoverageOrder find_order(const CoverageGrid& grid, const ColumnBatch& batch, con
   const bool are_told = 2 * open < kProbed;
   if (batch.by_cell && (!are_told || batch.count >= kRaysPerCellWhereTold * grid.cells.size()))
     return CoverageOrder::kByCell;
-  if (2 * same_tile > kProbed) return 2 * same_cell > placed ? CoverageOrder::kRuns : CoverageOrder::kAsGiven;
+  if (2 * same_tile > kProbed || !batch.by_tile)
+    return 2 * same_cell > placed ? CoverageOrder::kRuns : CoverageOrder::kAsGiven;
   return are_told ? CoverageOrder::kOpenByTile : CoverageOrder::kByTile;
+}
+
+/// So many waiting rays fit a cache.
+constexpr size_t kMostWaiting = size_t{1} << 17;
+
+template <class Question>
+void answer_waiting(const CoverageGrid& grid, const Question& question, std::vector<Waiting>& waiting) {
+  sort_by_tile(waiting, grid.tiles.size());
+  answer_all(grid, question, waiting.data(), waiting.size());
+  waiting.clear();
 }
 
 template <class Question>
 void ask_blocks(const CoverageGrid& grid, const ColumnBatch& batch, CoverageOrder order, const Question& question,
                 Asking& asking, std::vector<uint32_t>& rest) {
-  if (order == CoverageOrder::kOpenByTile) asking.waiting.reserve(batch.count);
   for (size_t begin = 0; begin < batch.count; begin += kBlock) {
     const size_t count = std::min<size_t>(kBlock, batch.count - begin);
     if (order == CoverageOrder::kByTile)
@@ -140,14 +150,14 @@ void ask_blocks(const CoverageGrid& grid, const ColumnBatch& batch, CoverageOrde
       continue;
     }
     const size_t size = ask_cells(grid, batch.rays.kind, count, question, asking, rest);
-    if (order == CoverageOrder::kOpenByTile)
-      asking.waiting.insert(asking.waiting.end(), asking.few, asking.few + size);
-    else
+    if (order != CoverageOrder::kOpenByTile) {
       answer_all(grid, question, asking.few, size);
+      continue;
+    }
+    asking.waiting.insert(asking.waiting.end(), asking.few, asking.few + size);
+    if (asking.waiting.size() >= kMostWaiting) answer_waiting(grid, question, asking.waiting);
   }
-  if (order != CoverageOrder::kOpenByTile) return;
-  sort_by_tile(asking.waiting, grid.tiles.size());
-  answer_all(grid, question, asking.waiting.data(), asking.waiting.size());
+  answer_waiting(grid, question, asking.waiting);
 }
 
 template <class Question>
@@ -166,7 +176,8 @@ void ask(const CoverageGrid& grid, const ColumnBatch& batch, const Question& que
       sort_points(grid, batch, grid.tiles.size(), by_tile, asking.block, asking.sorted);
     ask_blocks(grid, batch, order, question, asking, rest);
   }
-  std::sort(rest.begin() + static_cast<std::ptrdiff_t>(rest_begin), rest.end());
+  if (order == CoverageOrder::kByCell || order == CoverageOrder::kByTile)
+    std::sort(rest.begin() + static_cast<std::ptrdiff_t>(rest_begin), rest.end());
   question.finish();
 }
 

@@ -33,9 +33,16 @@ struct ColumnBatch {
   ColumnRays rays;
   const uint32_t* subset = nullptr;  // null: first, first + 1, ...
   uint32_t first = 0, count = 0;
-  CoverageOrder order = CoverageOrder::kAsGiven;  // kChosen: find out, with `by_cell` or by tile
-  bool by_cell = false;
+  CoverageOrder order = CoverageOrder::kAsGiven;  // kChosen: find out
+  bool by_cell = false, by_tile = false;          // ... where so many rays make that worth while
 
+  ColumnBatch part(size_t begin, size_t end) const {
+    ColumnBatch some = *this;
+    if (subset != nullptr) some.subset += begin;
+    some.first += static_cast<uint32_t>(begin);
+    some.count = static_cast<uint32_t>(end - begin);
+    return some;
+  }
   uint32_t number(size_t i) const { return subset != nullptr ? subset[i] : first + static_cast<uint32_t>(i); }
 };
 

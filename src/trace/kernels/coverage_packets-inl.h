@@ -64,6 +64,12 @@ struct Packet {
   HWY_INLINE ColumnFloats inside(const CoverageTriangle& triangle) const {
     return hn::Min(hn::Min(lane(triangle, 0), lane(triangle, 1)), lane(triangle, 2));
   }
+  /// Of the triangle's plane, which it must have.
+  HWY_INLINE ColumnFloats depth(const CoverageTriangle& triangle) const {
+    const ColumnFloats sum =
+        hn::Add(hn::Mul(broadcast_column(triangle.a[3]), x), hn::Mul(broadcast_column(triangle.b[3]), y));
+    return hn::Mul(hn::Add(sum, broadcast_column(triangle.c[3])), broadcast_column(triangle.per_ahead));
+  }
   HWY_INLINE ColumnFloats ahead(const CoverageTriangle& triangle) const {
     return hn::Add(lane(triangle, 3), hn::Mul(broadcast_column(triangle.ahead), s));
   }
@@ -108,19 +114,51 @@ struct FirstHits {
   alignas(64) uint32_t ids[kPacket];
 };
 
+/// Of each column: the candidates that reach highest, and the depth below which its first hit surely is not.
+struct Leaders {
+  ColumnFloats sure, sure_code, highest, second;
+  ColumnFloats count;  // of candidates
+  hn::Vec<hn::RebindToUnsigned<ColumnTag>> ids;
+
+  HWY_INLINE Leaders()
+      : sure(broadcast_column(-kInf)),
+        sure_code(broadcast_column(0)),
+        highest(sure),
+        second(sure),
+        count(sure_code),
+        ids(hn::Zero(hn::RebindToUnsigned<ColumnTag>())) {}
+
+  /// A triangle that may lie as high as `high`.
+  HWY_INLINE void add(uint32_t id, PacketMask possible, ColumnFloats high) {
+    const hn::RebindToUnsigned<ColumnTag> du;
+    count = hn::IfThenElse(possible, hn::Add(count, broadcast_column(1)), count);
+    second = hn::IfThenElse(possible, hn::Max(second, hn::Min(high, highest)), second);
+    const PacketMask higher = hn::And(possible, hn::Gt(high, highest));
+    highest = hn::IfThenElse(higher, high, highest);
+    ids = hn::IfThenElse(hn::RebindMask(du, higher), hn::Set(du, id), ids);
+  }
+
+  HWY_INLINE FirstHits result(uint32_t lanes) const {
+    const uint32_t any = lanes & bits_of(hn::Gt(count, broadcast_column(0)));
+    const PacketMask rivals = hn::And(hn::Gt(count, broadcast_column(1)), hn::Ge(second, sure));
+    const PacketMask too_many = hn::Gt(count, broadcast_column(static_cast<float>(kMostCandidates)));
+    FirstHits found;  // NOLINT: written now
+    found.several = any & bits_of(hn::Or(rivals, too_many));
+    found.one = any & ~found.several;
+    hn::Store(ids, hn::RebindToUnsigned<ColumnTag>(), found.ids);
+    return found;
+  }
+};
+
 /// For columns that start before all triangles.
-HWY_INLINE void find_first(const CoverageGrid& grid, const Packet& packet, uint32_t lanes, const CoverageCell& cell,
-                           const CoverageTile& tile, FirstHits& found, uint64_t& tests) {
-  const hn::RebindToUnsigned<ColumnTag> du;
+HWY_INLINE FirstHits find_first(const CoverageGrid& grid, const Packet& packet, uint32_t lanes,
+                                const CoverageCell& cell, const CoverageTile& tile, uint64_t& tests) {
   const CoverageReference* reference = grid.references.data() + cell.first;
   const CoverageReference* end = grid.references.data() + (&cell)[1].first;
-  const ColumnFloats nowhere = broadcast_column(-kInf), one = broadcast_column(1);
-  ColumnFloats sure = nowhere, sure_code = broadcast_column(0);
-  ColumnFloats highest = nowhere, second = nowhere, candidates = broadcast_column(0);
-  auto ids = hn::Zero(du);
+  Leaders leaders;
   uint32_t open = lanes;
   for (; reference != end; ++reference) {
-    open &= ~bits_of(hn::Lt(broadcast_column(reference->top), sure_code));
+    open &= ~bits_of(hn::Lt(broadcast_column(reference->top), leaders.sure_code));
     if (open == 0) break;
     const CoverageTriangle& triangle = grid.triangles[reference->triangle()];
     tests += static_cast<uint64_t>(std::popcount(open));
@@ -130,31 +168,19 @@ HWY_INLINE void find_first(const CoverageGrid& grid, const Packet& packet, uint3
     ColumnFloats high = broadcast_column(kInf);
     PacketMask possible = lanes_of(met);
     if (triangle.per_ahead > 0) {
-      const ColumnFloats plane = hn::Add(hn::Add(hn::Mul(broadcast_column(triangle.a[3]), packet.x),
-                                                 hn::Mul(broadcast_column(triangle.b[3]), packet.y)),
-                                         broadcast_column(triangle.c[3]));
-      const ColumnFloats depth = hn::Mul(plane, broadcast_column(triangle.per_ahead));
+      const ColumnFloats depth = packet.depth(triangle);
       const ColumnFloats radius = broadcast_column(2 * triangle.margin * triangle.per_ahead);
       const ColumnFloats low = hn::Sub(depth, radius);
       high = hn::Add(depth, radius);
-      possible = hn::And(possible, hn::Ge(high, sure));
-      const PacketMask surer =
-          hn::And(possible, hn::And(hn::Gt(low, sure), hn::Gt(inside, broadcast_column(triangle.margin))));
-      sure = hn::IfThenElse(surer, low, sure);
-      sure_code = hn::IfThenElse(surer, hn::Sub(codes_of(tile, low), broadcast_column(2)), sure_code);
+      possible = hn::And(possible, hn::Ge(high, leaders.sure));
+      const auto is_sure = hn::And(hn::Gt(low, leaders.sure), hn::Gt(inside, broadcast_column(triangle.margin)));
+      const PacketMask surer = hn::And(possible, is_sure);
+      leaders.sure = hn::IfThenElse(surer, low, leaders.sure);
+      leaders.sure_code = hn::IfThenElse(surer, hn::Sub(codes_of(tile, low), broadcast_column(2)), leaders.sure_code);
     }
-    candidates = hn::IfThenElse(possible, hn::Add(candidates, one), candidates);
-    second = hn::IfThenElse(possible, hn::Max(second, hn::Min(high, highest)), second);
-    const PacketMask higher = hn::And(possible, hn::Gt(high, highest));
-    highest = hn::IfThenElse(higher, high, highest);
-    ids = hn::IfThenElse(hn::RebindMask(du, higher), hn::Set(du, triangle.id), ids);
+    leaders.add(triangle.id, possible, high);
   }
-  constexpr float kMostCandidates = 8;  // of first_hits
-  const uint32_t any = lanes & bits_of(hn::Gt(candidates, broadcast_column(0)));
-  const PacketMask rivals = hn::And(hn::Gt(candidates, one), hn::Ge(second, sure));
-  found.several = any & bits_of(hn::Or(rivals, hn::Gt(candidates, broadcast_column(kMostCandidates))));
-  found.one = any & ~found.several;
-  hn::Store(ids, du, found.ids);
+  return leaders.result(lanes);
 }
 
 }  // namespace

@@ -132,7 +132,6 @@ HWY_INLINE uint32_t first_hits(const CoverageGrid& grid, float x, float y, const
     uint32_t id;
     float highest;
   };
-  constexpr size_t kMostCandidates = 8;
   const CoverageReference* reference = grid.references.data() + list.first;
   const CoverageTriangle* triangles = grid.triangles.data();
   const CoverageTile& tile = grid.tiles[list.tile];
@@ -208,26 +207,29 @@ struct NearestHit {
       lanes &= ~below;
     }
     for (uint32_t bits = lanes; bits != 0; bits &= bits - 1) hits[numbers[std::countr_zero(bits)]] = {};
-    const uint32_t list_size = (&cell)[1].first - cell.first;
-    if (list_size == 0 && has_no_near) {
+    if ((&cell)[1].first == cell.first && has_no_near) {
       counters.free += static_cast<uint64_t>(std::popcount(lanes));
       return;
     }
     for (const uint32_t id : grid.near_triangles)
       for (uint32_t bits = lanes; bits != 0; bits &= bits - 1) consider(id, numbers[std::countr_zero(bits)]);
-    FirstHits found;  // NOLINT: written by find_first
-    find_first(grid, packet, lanes, cell, tile, found, counters.triangle_tests);
+    const FirstHits found = find_first(grid, packet, lanes, cell, tile, counters.triangle_tests);
     counters.confirmations += static_cast<uint64_t>(std::popcount(found.one));
     confirmations.add(packet, found.ids, numbers, found.one);
-    if (found.several == 0) return;
+    if (found.several != 0) answer_apart(packet, found.several, numbers, cell, tile);
+  }
+
+  /// Columns one by one whose first hit is one of several.
+  HWY_NOINLINE void answer_apart(const Packet& packet, uint32_t lanes, const uint32_t* numbers,
+                                 const CoverageCell& cell, const CoverageTile& tile) const {
+    const CellList list{cell.first, (&cell)[1].first - cell.first, static_cast<uint32_t>(&tile - grid.tiles.data())};
     alignas(64) float x[kPacket], y[kPacket];
     hn::Store(packet.x, ColumnTag(), x);
     hn::Store(packet.y, ColumnTag(), y);
-    for (uint32_t bits = found.several; bits != 0; bits &= bits - 1) {
-      const auto lane = static_cast<size_t>(std::countr_zero(bits));
+    for (; lanes != 0; lanes &= lanes - 1) {
+      const auto lane = static_cast<size_t>(std::countr_zero(lanes));
       const auto tell = [&](uint32_t id) { consider(id, numbers[lane]); };
-      first_hits(grid, x[lane], y[lane], {cell.first, list_size, static_cast<uint32_t>(&tile - grid.tiles.data())},
-                 tell);
+      first_hits(grid, x[lane], y[lane], list, tell);
     }
   }
 

@@ -21,6 +21,7 @@ struct SortedPoint {
   Vec3 point;
   uint32_t number;
 };
+static_assert(sizeof(SortedPoint) == 16);
 
 /// Points in groups.
 struct SortedPoints {

@@ -61,7 +61,10 @@ class Confirmations {
     if (queued_ == 0) return;
     const std::array<uint32_t, 3>* corners = mesh_.triangles.data();
     const Vec3* vertices = mesh_.vertices.data();
-    for (size_t i = 0; i < queued_; ++i) hwy::Prefetch(corners + triangles_[i]);
+    for (size_t i = 0; i < queued_; ++i) {
+      hwy::Prefetch(corners + triangles_[i]);
+      hwy::Prefetch(hits_ + numbers_[i]);
+    }
     for (size_t i = 0; i < queued_; ++i)
       for (const uint32_t corner : corners[triangles_[i]]) hwy::Prefetch(vertices + corner);
     for (size_t i = 0; i < queued_; ++i)
