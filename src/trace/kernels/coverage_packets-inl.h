@@ -110,8 +110,8 @@ HWY_INLINE uint32_t meet_any(const CoverageGrid& grid, const Packet& packet, con
 
 /// What first_hits would tell of each column: lanes that have one candidate, and its id; lanes that have several.
 struct FirstHits {
-  uint32_t one, several;
   alignas(64) uint32_t ids[kPacket];
+  uint32_t one, several;
 };
 
 /// Of each column: the candidates that reach highest, and the depth below which its first hit surely is not.

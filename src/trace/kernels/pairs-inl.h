@@ -74,7 +74,8 @@ class Confirmations {
   }
 
  private:
-  static constexpr size_t kQueue = 64, kRoom = kQueue + 2 * kPacket;
+  static constexpr size_t kQueue = 64, kRoom = kQueue + 16;  // whole cache lines
+  static_assert(kRoom >= kQueue - 1 + 2 * kPacket);
 
   HWY_INLINE void decide(size_t first, size_t count) {
     const DoubleVectors own{load_doubles(points_[0] + first), load_doubles(points_[1] + first),
@@ -111,15 +112,15 @@ class Confirmations {
     return intersect_triangle(rays_[number], vertex(0, i), vertex(1, i), vertex(2, i), hit);
   }
 
-  const TriangleMesh& mesh_;
-  const ColumnRays& rays_;
-  Hit* hits_;
-  bool share_start_;
-  size_t queued_ = 0;
   alignas(64) float points_[3][kRoom];      // NOLINT: filled as far as queued_
   alignas(64) uint32_t triangles_[kRoom];   // NOLINT
   alignas(64) uint32_t numbers_[kRoom];     // NOLINT
   alignas(64) float corners_[3][3][kRoom];  // NOLINT
+  const TriangleMesh& mesh_;
+  const ColumnRays& rays_;
+  Hit* hits_;
+  size_t queued_ = 0;
+  bool share_start_;
 };
 
 }  // namespace
