@@ -34,11 +34,15 @@ bool column_along(const CoverageGrid& grid, const Ray& ray, int wanted, SingleCo
 }
 
 bool column_to_eye(const CoverageGrid& grid, const Ray& ray, SingleColumn& column) {
-  const Vec3d to_eye = to_double(grid.map.center) - to_double(ray.origin), q = turn(grid.map, -to_eye);
+  const Vec3d to_eye = to_double(grid.map.center) - to_double(ray.origin);
   // Most of several frusta about one eye are done with here: the grid's own test of its window is no wider.
   constexpr double kRoom = 1 + 0x1p-20;
   const double x_most = kRoom * static_cast<double>(grid.x_hi), y_most = kRoom * static_cast<double>(grid.y_hi);
-  if (!(q.z > 0 && std::abs(q.x) <= x_most * q.z && std::abs(q.y) <= y_most * q.z)) return false;
+  const auto& rows = grid.map.rows;
+  const double z = -dot(rows[2], to_eye);
+  if (!(z > 0)) return false;
+  const Vec3d q{-dot(rows[0], to_eye), -dot(rows[1], to_eye), z};
+  if (!((std::abs(q.x) <= x_most * z) & (std::abs(q.y) <= y_most * z))) return false;
   const Vec3d direction = to_double(ray.direction);
   const double distance = dot(to_eye, to_eye), size = dot(direction, direction), along = dot(to_eye, direction);
   if (!(size >= 0x1p-120 && size <= 0x1p120 && distance <= 0x1p120 && along > 0)) return false;
