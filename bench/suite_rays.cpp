@@ -7,14 +7,13 @@
 #include <numbers>
 #include <stdexcept>
 
-#include <time.h>
-
 #include "raygrain/trace.h"
 
 #include "base/random.h"
 #include "base/timer.h"
 #include "measure.h"
 #include "peer.h"
+#include "race_whole.h"
 #include "structured_rays.h"
 #include "suite.h"
 
@@ -30,32 +29,6 @@ AcceleratorOptions bench_options() {
   options.quality = Quality::kBalanced;
   options.space = LocalSpace::kNone;  // as docs/performance-rays.md found it best
   return options;
-}
-
-struct Contestant {
-  std::function<void(Answers&)> trace;
-  std::unique_ptr<Answers> answers;
-  double seconds = std::numeric_limits<double>::infinity();
-};
-
-/// Of this thread's processor, for what runs on it alone: other programs interrupt it without counting.
-double processor_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-/// All take turns on the whole set: batches are measured in the size in which they come. Each goes twice and the second
-/// time counts: nobody pays for what another left in the caches.
-void race_whole(std::vector<Contestant>& contestants, int rounds, unsigned threads) {
-  for (int round = 0; round < rounds; ++round)
-    for (Contestant& c : contestants) {
-      c.trace(*c.answers);
-      const Timer timer;
-      const double before = processor_seconds();
-      c.trace(*c.answers);
-      c.seconds = std::min(c.seconds, threads == 1 ? processor_seconds() - before : timer.seconds());
-    }
 }
 
 bool same_answer(bool any, const Answers& a, const Answers& b, size_t i) {
