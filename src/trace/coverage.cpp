@@ -28,7 +28,7 @@ struct Coverage::Data {
 namespace {
 
 /// Sorting by cell pays where so many rays meet each cell, on average. The more, the better, up to what caches hold.
-constexpr size_t kRaysPerCell = 3;
+constexpr size_t kRaysPerCell = 2;
 constexpr size_t kMostRaysPerTaskByCell = size_t{1} << 19;
 /// Sorting by tile pays where so many rays meet each tile ...
 constexpr size_t kRaysPerTile = 4;

@@ -99,16 +99,25 @@ HWY_INLINE Doubles largest_component(const DoubleVectors& a) {
   return max(max(absolute(a.x), absolute(a.y)), absolute(a.z));
 }
 
-/// The hits that the verdicts speak of, written as wholes: reading one of them need not wait for its parts.
-HWY_INLINE void to_hits(const Verdicts& verdicts, const uint32_t* triangles, Hit* hits) {
-  static_assert(sizeof(Hit) == 16 && offsetof(Hit, u) == 4 && offsetof(Hit, v) == 8 && offsetof(Hit, triangle) == 12);
-  const FloatTag d;
-  const auto ids = hn::BitCast(d, hn::LoadU(hn::RebindToUnsigned<FloatTag>(), triangles));
-  alignas(64) float numbers[4 * kDoubles];
-  hn::StoreInterleaved4(load_floats(verdicts.t).v, load_floats(verdicts.u).v, load_floats(verdicts.v).v, ids, d,
-                        numbers);
-  std::memcpy(hits, numbers, sizeof numbers);
-}
+/// The hits that verdicts speak of, written as wholes: reading one of them need not wait for its parts.
+class VerdictHits {
+ public:
+  HWY_INLINE VerdictHits(const Verdicts& verdicts, const uint32_t* triangles) {
+    static_assert(sizeof(Hit) == 16 && offsetof(Hit, u) == 4 && offsetof(Hit, v) == 8 && offsetof(Hit, triangle) == 12);
+    const FloatTag d;
+    const auto ids = hn::BitCast(d, hn::LoadU(hn::RebindToUnsigned<FloatTag>(), triangles));
+    hn::StoreInterleaved4(load_floats(verdicts.t).v, load_floats(verdicts.u).v, load_floats(verdicts.v).v, ids, d,
+                          numbers_);
+  }
+  HWY_INLINE Hit operator[](size_t i) const {
+    Hit hit;
+    std::memcpy(static_cast<void*>(&hit), numbers_ + 4 * i, sizeof hit);
+    return hit;
+  }
+
+ private:
+  alignas(64) float numbers_[4 * kDoubles];
+};
 
 /// One ray against one triangle, as intersect_triangle, and the triangle's number.
 HWY_INLINE bool confirm(const Ray& ray, const TriangleMesh& mesh, uint32_t id, Hit& hit) {
@@ -122,8 +131,7 @@ HWY_INLINE bool confirm(const Ray& ray, const TriangleMesh& mesh, uint32_t id, H
                  verdicts);
   uint32_t ids[kDoubles];
   for (uint32_t& i : ids) i = id;
-  alignas(64) Hit hits[kDoubles];  // NOLINT: written by to_hits
-  to_hits(verdicts, ids, hits);
+  const VerdictHits hits(verdicts, ids);
   if ((verdicts.unsure & 1) != 0) [[unlikely]] {
     if (!intersect_triangle(ray, a, b, c, hit)) return false;
     hit.triangle = id;

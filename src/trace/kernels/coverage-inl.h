@@ -99,8 +99,10 @@ HWY_INLINE void ask_runs(const CoverageGrid& grid, size_t count, const Question&
 /// From a few blocks: do most rays fall into the cell or the tile of the one before, and do cells tell most answers?
 template <class Question>
 CoverageOrder find_order(const CoverageGrid& grid, const ColumnBatch& batch, const Question& question, Asking& asking) {
-  constexpr size_t kProbes = 4, kProbed = kProbes * kBlock, kRaysPerCellWhereTold = 16;
-  if (batch.by_cell && Question::kStartsOutside) return CoverageOrder::kByCell;
+  constexpr size_t kProbes = 4, kProbed = kProbes * kBlock;
+  constexpr size_t kPerCellWhereTold = 16, kPerCellWhereInOrder = 5;
+  const size_t per_cell = batch.count / grid.cells.size();
+  if (batch.by_cell && Question::kStartsOutside && per_cell >= kPerCellWhereInOrder) return CoverageOrder::kByCell;
   if (batch.count <= kProbed || !(batch.by_cell || batch.by_tile)) return CoverageOrder::kAsGiven;
   size_t same_cell = 0, same_tile = 0, placed = 0, open = 0;
   std::vector<uint32_t> unwanted;
@@ -117,11 +119,10 @@ CoverageOrder find_order(const CoverageGrid& grid, const ColumnBatch& batch, con
     }
   }
   question.counters = before;  // the rays are asked again
-  const bool are_told = 2 * open < kProbed;
-  if (batch.by_cell && (!are_told || batch.count >= kRaysPerCellWhereTold * grid.cells.size()))
-    return CoverageOrder::kByCell;
-  if (2 * same_tile > kProbed || !batch.by_tile)
-    return 2 * same_cell > placed ? CoverageOrder::kRuns : CoverageOrder::kAsGiven;
+  const bool are_told = !Question::kStartsOutside && 2 * open<kProbed, are_in_order = 2 * same_tile> kProbed;
+  const size_t enough = are_told ? kPerCellWhereTold : are_in_order ? kPerCellWhereInOrder : 0;
+  if (batch.by_cell && per_cell >= enough) return CoverageOrder::kByCell;
+  if (are_in_order || !batch.by_tile) return 2 * same_cell > placed ? CoverageOrder::kRuns : CoverageOrder::kAsGiven;
   return are_told ? CoverageOrder::kOpenByTile : CoverageOrder::kByTile;
 }
 

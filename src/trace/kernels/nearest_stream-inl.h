@@ -52,13 +52,13 @@ class Confirmations {
                     largest_component(direction), load_doubles(values_[kSize] + first),
                     load_floats(values_[kMin] + first), load_floats(values_[kMax] + first)},
                    verdicts);
-    alignas(64) Hit hits[kDoubles];  // NOLINT: written by to_hits
-    to_hits(verdicts, triangle_ + first, hits);
+    const VerdictHits hits(verdicts, triangle_ + first);
     for (size_t i = 0; i < count; ++i) {
-      const bool is_hit =
-          (verdicts.unsure >> i & 1) != 0 ? decide_alone(first + i, hits[i]) : (verdicts.hit >> i & 1) != 0;
+      Hit hit = hits[i];
+      const bool is_unsure = (verdicts.unsure >> i & 1) != 0;
+      const bool is_hit = is_unsure ? decide_alone(first + i, hit) : (verdicts.hit >> i & 1) != 0;
       Hit& best = hits_[index_[first + i]];
-      if (is_hit && is_nearer(hits[i], best)) best = hits[i];
+      if (is_hit && is_nearer(hit, best)) best = hit;
     }
   }
 

@@ -33,6 +33,7 @@ class Confirmations {
       : mesh_(mesh), rays_(rays), hits_(hits), share_start_(rays.kind == ColumnRays::Kind::kFrom) {}
 
   HWY_INLINE void add(uint32_t triangle, uint32_t ray) {
+    hwy::Prefetch(hits_ + ray);
     const Vec3 point = rays_.points[ray];
     points_[0][queued_] = point.x;
     points_[1][queued_] = point.y;
@@ -61,10 +62,7 @@ class Confirmations {
     if (queued_ == 0) return;
     const std::array<uint32_t, 3>* corners = mesh_.triangles.data();
     const Vec3* vertices = mesh_.vertices.data();
-    for (size_t i = 0; i < queued_; ++i) {
-      hwy::Prefetch(corners + triangles_[i]);
-      hwy::Prefetch(hits_ + numbers_[i]);
-    }
+    for (size_t i = 0; i < queued_; ++i) hwy::Prefetch(corners + triangles_[i]);
     for (size_t i = 0; i < queued_; ++i)
       for (const uint32_t corner : corners[triangles_[i]]) hwy::Prefetch(vertices + corner);
     for (size_t i = 0; i < queued_; ++i)
@@ -87,13 +85,13 @@ class Confirmations {
     Verdicts verdicts;  // NOLINT: written by confirm
     confirm<false>({direction, a - origin, ab, ac, largest_component(direction), size, floats(0), floats(kInf)},
                    verdicts);
-    alignas(64) Hit hits[kDoubles];  // NOLINT: written by to_hits
-    to_hits(verdicts, triangles_ + first, hits);
+    const VerdictHits hits(verdicts, triangles_ + first);
     for (size_t i = 0; i < count; ++i) {
       const uint32_t number = numbers_[first + i];
       const bool is_sure = (verdicts.hit >> i & 1) != 0;
-      if (!is_sure && ((verdicts.unsure >> i & 1) == 0 || !ask(number, first + i, hits[i]))) continue;
-      if (is_nearer(hits[i], hits_[number])) hits_[number] = hits[i];
+      Hit hit = hits[i];
+      if (!is_sure && ((verdicts.unsure >> i & 1) == 0 || !ask(number, first + i, hit))) continue;
+      if (is_nearer(hit, hits_[number])) hits_[number] = hit;
     }
   }
 
