@@ -82,8 +82,8 @@ class Confirmations {
   const Ray* rays_;
   Hit* hits_;
   size_t count_ = 0;
-  alignas(64) float values_[kValues][kCapacity] = {};
-  alignas(64) uint32_t triangle_[kCapacity] = {};
+  alignas(32) float values_[kValues][kCapacity] = {};
+  uint32_t triangle_[kCapacity] = {};
   size_t index_[kCapacity];
 };
 
