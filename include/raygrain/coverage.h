@@ -25,6 +25,9 @@ enum class CoverageOrder : uint8_t {
   kByTile,      // sorted by tile first
   kByCell,      // sorted by cell first, those of a cell together
 };
+inline constexpr CoverageOrder kCoverageOrders[] = {CoverageOrder::kChosen, CoverageOrder::kAsGiven,
+                                                    CoverageOrder::kRuns,   CoverageOrder::kOpenByTile,
+                                                    CoverageOrder::kByTile, CoverageOrder::kByCell};
 /// "chosen", "as-given", "runs", "open-by-tile", "by-tile" or "by-cell".
 std::string_view name(CoverageOrder order);
 

@@ -59,9 +59,6 @@ Item any_of(Random& random, const std::array<Item, n>& items) {
   return items[random.below(n)];
 }
 
-constexpr std::array kOrders{CoverageOrder::kChosen,     CoverageOrder::kAsGiven, CoverageOrder::kRuns,
-                             CoverageOrder::kOpenByTile, CoverageOrder::kByTile,  CoverageOrder::kByCell};
-
 bool one_in(Random& random, uint64_t n) {
   return random.below(n) == 0;
 }
@@ -91,7 +88,7 @@ void draw_calls(StructureSpec& spec, Random& random) {
 void draw_coverage(StructureSpec& spec, Random& random) {
   spec.cells = any_of(random, std::array<float, 3>{0.25f, 4, 64});
   spec.tile = any_of(random, std::array<uint32_t, 3>{256, 16, 4});
-  spec.order = name(any_of(random, kOrders));
+  spec.order = name(kCoverageOrders[random.below(std::size(kCoverageOrders))]);
 }
 
 void draw_tree(StructureSpec& spec, Random& random, const Registry& registry) {
@@ -179,7 +176,7 @@ Isa parse_isa(const std::string& text) {
 }
 
 CoverageOrder parse_order(const std::string& text) {
-  for (const CoverageOrder order : kOrders)
+  for (const CoverageOrder order : kCoverageOrders)
     if (text == name(order)) return order;
   fail("unknown order \"" + text + "\"");
 }

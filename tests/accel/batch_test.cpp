@@ -10,7 +10,6 @@
 #include "raygrain/rays.h"
 
 #include "base/random.h"
-#include "support/coverage_orders.h"
 #include "support/mesh_families.h"
 
 namespace raygrain {
@@ -127,7 +126,7 @@ TEST(Batch, IsTheSameForAnyOrderAndAnyNumberOfThreads) {
       expected_sun[i] = usual.occluded({points[i], -kLight, 0, kInf});
       expected_lamp[i] = usual.occluded({points[i], scene.lamp - points[i], 0, 1});
     }
-    for (const CoverageOrder order : test::kCoverageOrders) {
+    for (const CoverageOrder order : kCoverageOrders) {
       SCOPED_TRACE(name(order));
       AcceleratorOptions options;
       options.coverage->order = order;

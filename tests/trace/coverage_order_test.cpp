@@ -8,7 +8,6 @@
 #include "raygrain/coverage.h"
 
 #include "base/random.h"
-#include "support/coverage_orders.h"
 #include "support/mesh_families.h"
 #include "support/same_bits.h"
 
@@ -104,7 +103,7 @@ void compare_orders(const std::shared_ptr<const TriangleMesh>& mesh, const Quest
     const Coverage as_given(mesh, q.area, options);
     const Answered all = ask(as_given, q, {}, 1), chosen = ask(as_given, q, some, 1);
     any.add(all.any), nearest.add(all.nearest);
-    for (const CoverageOrder order : test::kCoverageOrders) {
+    for (const CoverageOrder order : kCoverageOrders) {
       SCOPED_TRACE(q.area.name + ", " + std::string(name(isa)) + ", " + std::string(name(order)));
       options.order = order;
       const Coverage coverage(mesh, q.area, options);
@@ -137,7 +136,7 @@ TEST(CoverageOrder, ChangesNeitherAnswersNorCounts) {
 }
 
 TEST(CoverageOrder, HasNames) {
-  for (const CoverageOrder order : test::kCoverageOrders) EXPECT_FALSE(name(order).empty());
+  for (const CoverageOrder order : kCoverageOrders) EXPECT_FALSE(name(order).empty());
   EXPECT_EQ(name(CoverageOrder::kByCell), "by-cell");
 }
 

@@ -12,7 +12,6 @@
 #include "raygrain/trace.h"
 
 #include "base/random.h"
-#include "support/coverage_orders.h"
 #include "support/mesh_families.h"
 #include "support/same_bits.h"
 
@@ -175,7 +174,7 @@ void for_families(uint64_t seeds, const Body& body) {
 CoverageOptions some_options(uint64_t seed, Isa isa, Random& random) {
   const float cells[] = {0.25f, 4, 64};
   const uint32_t triangles[] = {256, 16, 4};
-  const CoverageOrder order = test::kCoverageOrders[random.below(std::size(test::kCoverageOrders))];
+  const CoverageOrder order = kCoverageOrders[random.below(std::size(kCoverageOrders))];
   return {cells[seed % 3], triangles[(seed / 3 + seed) % 3], isa, order, 1};
 }
 

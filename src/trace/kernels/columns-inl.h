@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "trace/kernels/coverage_kernels.h"
+#include "trace/kernels/masks-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace raygrain::HWY_NAMESPACE {
@@ -187,21 +188,14 @@ struct Four {
   HWY_INLINE uint32_t at_least(float bound) const {
     uint32_t result = 0;
     for (size_t i = 0; i < kFourParts; ++i)
-      result |= bits(hn::Ge(part[i], hn::Set(FourTag(), bound))) << (i * kFourLanes);
+      result |= bits_of(FourTag(), hn::Ge(part[i], hn::Set(FourTag(), bound))) << (i * kFourLanes);
     return result;
   }
   HWY_INLINE uint32_t above(float bound) const {
     uint32_t result = 0;
     for (size_t i = 0; i < kFourParts; ++i)
-      result |= bits(hn::Gt(part[i], hn::Set(FourTag(), bound))) << (i * kFourLanes);
+      result |= bits_of(FourTag(), hn::Gt(part[i], hn::Set(FourTag(), bound))) << (i * kFourLanes);
     return result;
-  }
-
- private:
-  static HWY_INLINE uint32_t bits(hn::Mask<FourTag> mask) {
-    uint8_t stored[8] = {};
-    hn::StoreMaskBits(FourTag(), mask, stored);
-    return stored[0];
   }
 };
 

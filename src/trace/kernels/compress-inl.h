@@ -8,6 +8,8 @@
 
 #include <hwy/highway.h>
 
+#include "trace/kernels/masks-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace raygrain::HWY_NAMESPACE {
 namespace {
@@ -35,10 +37,9 @@ HWY_INLINE hn::Vec<LaneTag> compressed(LaneTag tag, hn::Vec<LaneTag> lanes, hn::
   return hn::Compress(lanes, mask);
 #else
   static_assert(hn::MaxLanes(LaneTag()) <= 8);
-  uint8_t bits[8] = {};
-  hn::StoreMaskBits(tag, mask, bits);
   const hn::Rebind<uint8_t, LaneTag> bytes;
-  const auto places = hn::PromoteTo(hn::RebindToUnsigned<LaneTag>(), hn::LoadU(bytes, kLaneLists.of[bits[0]]));
+  const auto places =
+      hn::PromoteTo(hn::RebindToUnsigned<LaneTag>(), hn::LoadU(bytes, kLaneLists.of[bits_of(tag, mask)]));
   return hn::TableLookupLanes(lanes, hn::IndicesFromVec(tag, places));
 #endif
 }

@@ -119,7 +119,8 @@ CoverageOrder find_order(const CoverageGrid& grid, const ColumnBatch& batch, con
     }
   }
   question.counters = before;  // the rays are asked again
-  const bool are_told = !Question::kStartsOutside && 2 * open<kProbed, are_in_order = 2 * same_tile> kProbed;
+  const bool are_told = !Question::kStartsOutside && 2 * open < kProbed;
+  const bool are_in_order = 2 * same_tile > kProbed;
   const size_t enough = are_told ? kPerCellWhereTold : are_in_order ? kPerCellWhereInOrder : 0;
   if (batch.by_cell && per_cell >= enough) return CoverageOrder::kByCell;
   if (are_in_order || !batch.by_tile) return 2 * same_cell > placed ? CoverageOrder::kRuns : CoverageOrder::kAsGiven;
@@ -131,6 +132,7 @@ constexpr size_t kMostWaiting = size_t{1} << 17;
 
 template <class Question>
 void answer_waiting(const CoverageGrid& grid, const Question& question, std::vector<Waiting>& waiting) {
+  if (waiting.empty()) return;
   sort_by_tile(waiting, grid.tiles.size());
   answer_all(grid, question, waiting.data(), waiting.size());
   waiting.clear();

@@ -18,15 +18,8 @@ namespace {
 constexpr size_t kPacket = hn::MaxLanes(ColumnTag());
 using PacketMask = hn::Mask<ColumnTag>;
 
-HWY_INLINE PacketMask lanes_of(uint32_t bits) {
-  const auto stored = static_cast<uint8_t>(bits);
-  const uint8_t bytes[8] = {stored};
-  return hn::LoadMaskBits(ColumnTag(), bytes);
-}
 HWY_INLINE uint32_t bits_of(PacketMask mask) {
-  uint8_t bytes[8] = {};
-  hn::StoreMaskBits(ColumnTag(), mask, bytes);
-  return bytes[0];
+  return bits_of(ColumnTag(), mask);
 }
 HWY_INLINE ColumnFloats broadcast_column(float a) {
   return hn::Set(ColumnTag(), a);
@@ -166,7 +159,7 @@ HWY_INLINE FirstHits find_first(const CoverageGrid& grid, const Packet& packet, 
     const uint32_t met = open & bits_of(hn::Ge(inside, broadcast_column(-triangle.margin)));
     if (met == 0) continue;
     ColumnFloats high = broadcast_column(kInf);
-    PacketMask possible = lanes_of(met);
+    PacketMask possible = mask_of(ColumnTag(), met);
     if (triangle.per_ahead > 0) {
       const ColumnFloats depth = packet.depth(triangle);
       const ColumnFloats radius = broadcast_column(2 * triangle.margin * triangle.per_ahead);

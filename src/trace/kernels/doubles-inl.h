@@ -10,6 +10,8 @@
 
 #include "raygrain/vec.h"
 
+#include "trace/kernels/masks-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace raygrain::HWY_NAMESPACE {
 namespace {
@@ -59,9 +61,7 @@ HWY_INLINE Doubles absolute(Doubles a) {
 }
 /// Bit i says a[i] < b[i]; false for NaN.
 HWY_INLINE uint32_t less(Doubles a, Doubles b) {
-  uint8_t bits[8] = {};
-  hn::StoreMaskBits(DoubleTag(), hn::Lt(a.v, b.v), bits);
-  return bits[0];
+  return bits_of(DoubleTag(), hn::Lt(a.v, b.v));
 }
 
 /// The floats nearest to a, zeros positive.
@@ -78,14 +78,10 @@ HWY_INLINE Floats load_floats(const float* from) {
   return {hn::LoadU(FloatTag(), from)};
 }
 HWY_INLINE uint32_t equal(Floats a, Floats b) {
-  uint8_t bits[8] = {};
-  hn::StoreMaskBits(FloatTag(), hn::Eq(a.v, b.v), bits);
-  return bits[0];
+  return bits_of(FloatTag(), hn::Eq(a.v, b.v));
 }
 HWY_INLINE uint32_t less_equal(Floats a, Floats b) {
-  uint8_t bits[8] = {};
-  hn::StoreMaskBits(FloatTag(), hn::Le(a.v, b.v), bits);
-  return bits[0];
+  return bits_of(FloatTag(), hn::Le(a.v, b.v));
 }
 HWY_INLINE void store(Floats a, float* to) {
   hn::StoreU(a.v, FloatTag(), to);

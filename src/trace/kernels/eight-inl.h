@@ -8,6 +8,7 @@
 
 #include <hwy/highway.h>
 
+#include "trace/kernels/masks-inl.h"
 #include "trace/wide_tree.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -90,11 +91,7 @@ HWY_INLINE Eight absolute(const Eight& a) {
 /// Bit i says a[i] <= b[i]; false for NaN.
 HWY_INLINE uint32_t less_equal(const Eight& a, const Eight& b) {
   uint32_t bits = 0;
-  for (size_t i = 0; i < kParts; ++i) {
-    uint8_t part[8] = {};
-    hn::StoreMaskBits(Tag(), hn::Le(a.part[i], b.part[i]), part);
-    bits |= static_cast<uint32_t>(part[0]) << (i * kLanes);
-  }
+  for (size_t i = 0; i < kParts; ++i) bits |= bits_of(Tag(), hn::Le(a.part[i], b.part[i])) << (i * kLanes);
   return bits;
 }
 

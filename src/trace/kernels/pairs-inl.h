@@ -47,7 +47,7 @@ class Confirmations {
   HWY_INLINE void add(const Packet& packet, const uint32_t* triangles, const uint32_t* rays, uint32_t lanes) {
     const ColumnTag d;
     const hn::RebindToUnsigned<ColumnTag> du;
-    const PacketMask mask = lanes_of(lanes);
+    const PacketMask mask = mask_of(d, lanes);
     const auto integer_mask = hn::RebindMask(du, mask);
     hn::StoreU(compressed(d, packet.px, mask), d, points_[0] + queued_);
     hn::StoreU(compressed(d, packet.py, mask), d, points_[1] + queued_);

@@ -47,8 +47,7 @@ struct StreamStack {
 };
 
 HWY_INLINE hn::Mask<Tag> mask_of(uint32_t bits) {
-  const uint8_t bytes[8] = {static_cast<uint8_t>(bits)};
-  return hn::LoadMaskBits(Tag(), bytes);
+  return mask_of(Tag(), bits);
 }
 
 /// The least of those in `bits`; infinity without any.
