@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "raygrain/ray_frame.h"
+#include "trace/coverage_map.h"
 
 namespace raygrain {
 namespace {
@@ -18,18 +18,9 @@ struct Rectangle {
   double x_lo, x_hi, y_lo, y_hi;
 };
 
-double largest(Vec3 a) {
-  return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
-}
-
-/// Sheared onto the coordinate plane that faces the light most: edges along its two axes stay along the cells.
-void set_parallel_map(CoverageGrid& grid, Vec3 direction, const Bounds& box) {
-  const double d[3] = {std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)};
-  const size_t axis = d[0] > d[1] ? (d[0] > d[2] ? 0 : 2) : (d[1] > d[2] ? 1 : 2);
-  const FrameKind kinds[3] = {FrameKind::kShearX, FrameKind::kShearY, FrameKind::kShearZ};
-  grid.map.center = center(box);
-  const RayFrame frame = *parallel_frame(kinds[axis], direction, grid.map.center);
-  grid.map.rows = {frame.rows[0], frame.rows[1], -frame.rows[2]};
+template <class Vector>
+double largest(Vector a) {
+  return std::max<double>({std::abs(a.x), std::abs(a.y), std::abs(a.z)});
 }
 
 Rectangle rectangle_of(const CoverageGrid& grid, std::span<const Vec3> points) {
@@ -46,13 +37,20 @@ double row_length(Vec3d row) {
   return std::abs(row.x) + std::abs(row.y) + std::abs(row.z);
 }
 
+/// How far from the map's center, along any axis of the world, a query with such coordinates in the map may be.
+double farthest_query(const ColumnMap& map, double greatest_xy, double greatest_s) {
+  const auto [x, y, s] = map.rows;
+  const double volume = std::abs(dot(x, cross(y, s)));
+  return ((largest(cross(y, s)) + largest(cross(s, x))) * greatest_xy + largest(cross(x, y)) * greatest_s) / volume;
+}
+
 /// The window of parallel rays and the errors inside it.
 bool set_parallel_window(CoverageGrid& grid, const AreaGeometry& area, const Bounds& box) {
   std::vector<Vec3> corners;
   for (const Vec3d corner : area.region().outer_corners) corners.push_back(to_float(corner));
   const Rectangle window = rectangle_of(grid, corners);
   const Rectangle scene = rectangle_of(grid, grid.mesh->vertices);
-  const double reach = std::max<double>(largest(extent(box)), 0x1p-100) / 2;
+  const double reach = std::max(largest(extent(box)), 0x1p-100) / 2;
   const double rows =
       std::max({row_length(grid.map.rows[0]), row_length(grid.map.rows[1]), row_length(grid.map.rows[2])});
   ColumnErrors& e = grid.errors;
@@ -60,7 +58,7 @@ bool set_parallel_window(CoverageGrid& grid, const AreaGeometry& area, const Bou
   for (const Vec3 corner : corners) e.greatest_s = std::max(e.greatest_s, std::abs(grid.map.turned(corner).z) * 1.01);
   e.greatest_s = std::min(e.greatest_s, 16 * reach);
   e.greatest_xy = 2 * rows * reach;
-  const double farthest = e.greatest_xy + e.greatest_s * rows;  // from the center, of queries
+  const double farthest = farthest_query(grid.map, e.greatest_xy, e.greatest_s);
   e.place = 8 * kRoundoff * rows * farthest + 16 * kRoundoff * e.greatest_xy;
   e.drift = kMostSlope * (e.greatest_s + reach * rows);
   e.evaluation = 32 * kRoundoff * e.greatest_xy;
@@ -117,7 +115,7 @@ std::optional<double> set_window(CoverageGrid& grid, const AreaGeometry& area) {
   if (is_empty(box) || !fits_floats(box)) return {};
   double near_z = 0;
   if (area.is_plane()) {
-    set_parallel_map(grid, std::get<PlaneArea>(area.area().shape).direction, box);
+    grid.map = choose_parallel_map(*grid.mesh, std::get<PlaneArea>(area.area().shape).direction, center(box));
     if (!set_parallel_window(grid, area, box)) return {};
   } else {
     near_z = set_eye_window(grid, area);

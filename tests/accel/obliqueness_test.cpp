@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "raygrain/coverage.h"
 #include "raygrain/frame_tree.h"
 #include "raygrain/rays.h"
 #include "raygrain/wide.h"
@@ -47,24 +48,46 @@ double pruned_cost(const TraceCounters& c) {
   return 2 * static_cast<double>(c.inner_hits) + 1.2 * static_cast<double>(c.leaf_triangles);
 }
 
+const Vec3d kSun = normalized(Vec3d{0.3, -1, 0.45});
+
+/// Some way to turn the world, the first being none.
+Frame turn_of(int number, Random& random) {
+  if (number == 0) return {};
+  return make_frame({}, {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)},
+                    {random.uniform(-1, 1), 0.3, 1});
+}
+
+Vec3 turned(const Frame& axes, Vec3d v) {
+  return to_float(to_world_direction(axes, v));
+}
+
+TriangleMesh turned(const Frame& axes, TriangleMesh mesh) {
+  for (Vec3& vertex : mesh.vertices) vertex = turned(axes, to_double(vertex));
+  return mesh;
+}
+
+InfluenceArea sun_over(const Frame& axes, const TriangleMesh& mesh) {
+  InfluenceArea area = directional_light_area("sun", turned(axes, kSun), mesh_bounds(mesh));
+  std::get<PlaneArea>(area.shape).up = turned(axes, {0, 0, 1});
+  return area;
+}
+
+double spread(const std::vector<double>& costs) {
+  const auto [least, most] = std::ranges::minmax(costs);
+  return most / least;
+}
+
 // Scene and rays turned together: ray space does not notice, the world's axes do.
 TEST(FrameTree, ObliquenessCostsNothing) {
   const TriangleMesh scene = town(5);
-  const Vec3d sun = normalized(Vec3d{0.3, -1, 0.45}), up{0, 0, 1};
   std::vector<Vec3d> starts;
   Random random(9);
   for (int i = 0; i < 2000; ++i) starts.push_back({random.uniform(0, 20), 3.5, random.uniform(0, 20)});
   std::vector<double> in_ray_space, in_world;
   for (int turn = 0; turn < 20; ++turn) {
-    const Frame axes = turn == 0 ? Frame{}
-                                 : make_frame({}, {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)},
-                                              {random.uniform(-1, 1), 0.3, 1});
-    TriangleMesh mesh = scene;
-    for (Vec3& vertex : mesh.vertices) vertex = to_float(to_world_direction(axes, to_double(vertex)));
-    const Vec3 direction = to_float(to_world_direction(axes, sun));
-    InfluenceArea area = directional_light_area("sun", direction, mesh_bounds(mesh));
-    std::get<PlaneArea>(area.shape).up = to_float(to_world_direction(axes, up));
-    const AreaGeometry geometry(area);
+    const Frame axes = turn_of(turn, random);
+    const TriangleMesh mesh = turned(axes, scene);
+    const AreaGeometry geometry(sun_over(axes, mesh));
     RayFrame frame = *area_frame(FrameKind::kRotation, geometry);
     frame.domain = {{-kInf, -kInf, -kInf}, {kInf, kInf, kInf}};
     std::vector<uint32_t> ids(mesh.triangle_count());
@@ -73,20 +96,45 @@ TEST(FrameTree, ObliquenessCostsNothing) {
     const WideBvh wide(build_binned(triangle_bounds(mesh), triangle_centroids(mesh), {}), mesh);
     TraceCounters ours, worlds;
     for (const Vec3d start : starts) {
-      const Ray ray{to_float(to_world_direction(axes, start)), direction};
+      const Ray ray{turned(axes, start), turned(axes, kSun)};
       ASSERT_TRUE(same_bits(*tree->intersect_counted(ray, ours), wide.intersect_counted(ray, worlds)));
     }
     in_ray_space.push_back(pruned_cost(ours));
     in_world.push_back(pruned_cost(worlds));
   }
-  const auto spread = [](const std::vector<double>& costs) {
-    const auto [least, most] = std::ranges::minmax(costs);
-    return most / least;
-  };
   std::cout << "turned 20 times: pruned cost varies by a factor of " << spread(in_ray_space) << " in ray space, "
             << spread(in_world) << " in the world's axes\n";
   EXPECT_LE(spread(in_ray_space), 1.05);
   EXPECT_GE(spread(in_world), 1.1);
+}
+
+// Nor do cells: what columns meet beyond them, and how many cells tell the answer.
+TEST(Coverage, ObliquenessCostsNothing) {
+  const TriangleMesh scene = town(5);
+  std::vector<Vec3d> starts;
+  Random random(9);
+  for (int i = 0; i < 20000; ++i)
+    starts.push_back({random.uniform(0, 20), random.uniform(0, 3), random.uniform(0, 20)});
+  std::vector<double> costs, told;
+  for (int turn = 0; turn < 20; ++turn) {
+    const Frame axes = turn_of(turn, random);
+    const auto mesh = std::make_shared<const TriangleMesh>(turned(axes, scene));
+    const Coverage coverage(mesh, sun_over(axes, *mesh));
+    ASSERT_TRUE(coverage.is_useful());
+    std::vector<Vec3> points;
+    for (const Vec3d start : starts) points.push_back(turned(axes, start));
+    std::vector<uint8_t> flags(points.size());
+    std::vector<uint32_t> rest;
+    CoverageCounters counters;
+    coverage.occluded(points, -turned(axes, kSun), flags, rest, {}, 1, &counters);
+    EXPECT_TRUE(rest.empty()) << "turn " << turn;
+    costs.push_back(2 + 1.2 * static_cast<double>(counters.triangle_tests) / static_cast<double>(points.size()));
+    told.push_back(static_cast<double>(counters.covered + counters.free));
+  }
+  std::cout << "turned 20 times: the cost of a column varies by a factor of " << spread(costs) << " about "
+            << costs.front() << ", what cells tell by " << spread(told) << '\n';
+  EXPECT_LE(spread(costs), 1.05);
+  EXPECT_LE(spread(told), 1.05);
 }
 
 }  // namespace
