@@ -15,8 +15,8 @@ namespace {
 class AnyStream {
  public:
   struct Slot {
-    BoxFilter boxes;
-    TriangleFilter triangles;
+    BoxFilter<float> boxes;
+    TriangleFilter<float> triangles;
     ChildRef current;
     float tmax;
     size_t index;  // of the ray
@@ -63,10 +63,11 @@ class AnyStream {
 
   HWY_INLINE void visit_leaf(Slot& s) {
     const WideLeaf leaf = tree_.leaf(s.current);
-    Candidates found;
-    const uint32_t possible = s.triangles.test<false>(leaf, s.current, s.tmax, found);
-    bool is_hit = (found.sure & less_equal(load(found.latest), broadcast(s.tmax))) != 0;
-    if (possible != 0 && !is_hit) is_hit = confirm_one_of(leaf, possible, rays_[s.index]);
+    const AnyHits found = meet_any<false>(s.triangles.pairs(leaf, s.current, s.tmax));
+    bool is_hit = found.sure != 0;
+    const uint64_t unsure = choose(is_hit, 0, found.possible);
+    if (unsure != 0) [[unlikely]]
+      is_hit = confirm_one_of(leaf, static_cast<uint32_t>(unsure), rays_[s.index]);
     flags_[s.index] = is_hit ? 1 : 0;
     s.current = choose(is_hit, kDone, s.stack.child[--s.stack.size]);
     fetch(tree_, s.current);

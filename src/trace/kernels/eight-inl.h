@@ -29,6 +29,9 @@ HWY_INLINE Eight broadcast(float x) {
   for (size_t i = 0; i < kParts; ++i) r.part[i] = hn::Set(Tag(), x);
   return r;
 }
+HWY_INLINE Eight broadcast(const Eight& x) {
+  return x;
+}
 HWY_INLINE Eight load(const float* from) {
   Eight r;
   for (size_t i = 0; i < kParts; ++i) r.part[i] = hn::Load(Tag(), from + i * kLanes);
@@ -88,6 +91,12 @@ HWY_INLINE Eight absolute(const Eight& a) {
   for (size_t i = 0; i < kParts; ++i) r.part[i] = hn::Abs(a.part[i]);
   return r;
 }
+/// a, or -a where b is negative.
+HWY_INLINE Eight times_sign(const Eight& a, const Eight& b) {
+  Eight r;
+  for (size_t i = 0; i < kParts; ++i) r.part[i] = hn::Xor(a.part[i], hn::And(b.part[i], hn::SignBit(Tag())));
+  return r;
+}
 /// Bit i says a[i] <= b[i]; false for NaN.
 HWY_INLINE uint32_t less_equal(const Eight& a, const Eight& b) {
   uint32_t bits = 0;
@@ -99,8 +108,9 @@ struct EightVectors {
   Eight x, y, z;
 };
 
-HWY_INLINE EightVectors broadcast(Vec3 a) {
-  return {broadcast(a.x), broadcast(a.y), broadcast(a.z)};
+template <class Kept>
+HWY_INLINE EightVectors broadcast(const Kept (&a)[3]) {
+  return {broadcast(a[0]), broadcast(a[1]), broadcast(a[2])};
 }
 HWY_INLINE EightVectors load_corner(const WideLeaf& leaf, size_t c) {
   return {load_unaligned(leaf.corner(c, 0)), load_unaligned(leaf.corner(c, 1)), load_unaligned(leaf.corner(c, 2))};

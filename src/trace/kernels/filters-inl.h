@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <type_traits>
 
 #include "trace/kernels/eight-inl.h"
 #include "trace/wide_tree.h"
@@ -20,15 +21,26 @@ namespace {
 
 constexpr float kRoundoff = 0x1p-24f;
 
-/// Floats serve for rays and scenes of these sizes; others take the careful path.
+/// Lanes serve for rays and scenes of these sizes; others take the careful path.
 constexpr float kLeast = 0x1p-30f, kGreatest = 0x1p30f;
 /// ... and for origins at most so many scene sizes away.
 constexpr float kFarthest = 0x1p10f;
 
+/// Numbers of a ray are kept as floats where many rays are in flight, which a first cache has to hold, and as vectors
+/// where one ray is alone, in registers.
+template <class Kept>
+HWY_INLINE Kept kept(float x) {
+  if constexpr (std::is_same_v<Kept, float>)
+    return x;
+  else
+    return broadcast(x);
+}
+
 /// A ray against eight boxes: per axis, t = side * inverse + offset.
+template <class Kept>
 struct BoxFilter {
-  Eight inverse[3], near_offset[3], far_offset[3];
-  Eight earliest;
+  Kept inverse[3], near_offset[3], far_offset[3];
+  Kept earliest;
   size_t near_side[3], far_side[3];  // in floats from the start of a node
 
   /// False if floats do not serve for this ray, or if its origin or direction is not finite or its direction zero.
@@ -51,26 +63,26 @@ struct BoxFilter {
       const float reciprocal = 1 / std::max(std::abs(direction[axis]), least);
       const float inverse_of_axis = std::copysign(reciprocal, direction[axis]);
       const float offset = -origin[axis] * inverse_of_axis, slack = padding * reciprocal;
-      inverse[axis] = broadcast(inverse_of_axis);
-      near_offset[axis] = broadcast(offset - slack);
-      far_offset[axis] = broadcast(offset + slack);
+      inverse[axis] = kept<Kept>(inverse_of_axis);
+      near_offset[axis] = kept<Kept>(offset - slack);
+      far_offset[axis] = kept<Kept>(offset + slack);
       near_side[axis] = (axis + 3 * backward) * kWidth;
       far_side[axis] = (axis + 3 * (1 - backward)) * kWidth;
     }
-    earliest = broadcast(std::max(ray.tmin, skip_before));
+    earliest = kept<Kept>(std::max(ray.tmin, skip_before));
     return true;
   }
 
   /// Bit i: the ray may meet child i at a t <= bound that counts, and not before entry[i].
   HWY_INLINE uint32_t operator()(const WideNode& node, float bound, float* entry) const {
     const float* sides = &node.lower[0][0];
-    const Eight near_x = multiply_add(load(sides + near_side[0]), inverse[0], near_offset[0]);
-    const Eight near_y = multiply_add(load(sides + near_side[1]), inverse[1], near_offset[1]);
-    const Eight near_z = multiply_add(load(sides + near_side[2]), inverse[2], near_offset[2]);
-    const Eight far_x = multiply_add(load(sides + far_side[0]), inverse[0], far_offset[0]);
-    const Eight far_y = multiply_add(load(sides + far_side[1]), inverse[1], far_offset[1]);
-    const Eight far_z = multiply_add(load(sides + far_side[2]), inverse[2], far_offset[2]);
-    const Eight enter = max(max(near_x, near_y), max(near_z, earliest));
+    const Eight near_x = multiply_add(load(sides + near_side[0]), broadcast(inverse[0]), broadcast(near_offset[0]));
+    const Eight near_y = multiply_add(load(sides + near_side[1]), broadcast(inverse[1]), broadcast(near_offset[1]));
+    const Eight near_z = multiply_add(load(sides + near_side[2]), broadcast(inverse[2]), broadcast(near_offset[2]));
+    const Eight far_x = multiply_add(load(sides + far_side[0]), broadcast(inverse[0]), broadcast(far_offset[0]));
+    const Eight far_y = multiply_add(load(sides + far_side[1]), broadcast(inverse[1]), broadcast(far_offset[1]));
+    const Eight far_z = multiply_add(load(sides + far_side[2]), broadcast(inverse[2]), broadcast(far_offset[2]));
+    const Eight enter = max(max(near_x, near_y), max(near_z, broadcast(earliest)));
     const Eight leave = min(min(far_x, far_y), min(far_z, broadcast(bound)));
     store(enter, entry);
     return less_equal(enter, leave);
@@ -79,6 +91,101 @@ struct BoxFilter {
  private:
   static float relative(float x, float center) { return x - center; }
 };
+
+/// A ray against eight triangles.
+struct TrianglePairs {
+  EightVectors origin, direction, a, b, c;
+  Eight earliest, latest;  // of t
+  float length, size;      // the greatest component of the direction; at least that of all edges
+  uint32_t lanes;          // that count
+};
+
+constexpr float kFloor = 0x1p-56f, kTiny = 0x1p-100f;  // cover what underflows
+
+/// What both questions about pairs begin with: on which sides of the edges the ray passes; t = numerator / sum.
+struct PairSides {
+  Eight sum, numerator, distance;
+  Eight lowest, highest, error;  // of the weights
+  uint32_t inside;               // lanes that the ray may pass within the edges
+};
+
+HWY_INLINE PairSides sides_of(const TrianglePairs& pairs) {
+  const EightVectors to_a = pairs.a - pairs.origin, ab = pairs.b - pairs.a, ac = pairs.c - pairs.a;
+  const EightVectors moment = cross(pairs.direction, to_a), normal = cross(ab, ac);
+  const Eight sum = dot(pairs.direction, normal), minus_b = dot(moment, ac), weight_c = dot(moment, ab);
+  const Eight weight_a = sum + minus_b - weight_c, weight_b = broadcast(0.0f) - minus_b;
+  PairSides sides;
+  sides.distance = largest_component(to_a);
+  const float scale = pairs.length * pairs.size * (128 * kRoundoff);
+  sides.error = multiply_add(broadcast(scale), sides.distance, broadcast(scale * pairs.size + kFloor));
+  sides.lowest = min(min(weight_a, weight_b), weight_c), sides.highest = max(max(weight_a, weight_b), weight_c);
+  const uint32_t not_negative = less_equal(broadcast(0.0f) - sides.error, sides.lowest);
+  const uint32_t not_positive = less_equal(sides.highest, sides.error);
+  sides.inside = (not_negative | not_positive) & pairs.lanes;
+  sides.sum = sum, sides.numerator = dot(to_a, normal);
+  return sides;
+}
+
+HWY_INLINE uint32_t strictly_inside(const PairSides& s) {
+  return ~(less_equal(s.lowest, s.error) & less_equal(broadcast(0.0f) - s.error, s.highest));
+}
+
+/// Bits of lanes whose ray may hit its triangle, and of those whose ray surely does; the bounds of t, unknown where it
+/// is not steep.
+struct PairHits {
+  Eight first, last;
+  uint32_t possible = 0, sure = 0, steep = 0;
+};
+
+/// kEarlyOut: where nothing is possible, no more may be set.
+template <bool kEarlyOut>
+HWY_INLINE PairHits meet(const TrianglePairs& pairs) {
+  const PairSides sides = sides_of(pairs);
+  PairHits found;  // NOLINT: its bounds are written below
+  if (kEarlyOut && sides.inside == 0) return found;
+  const float area = pairs.size * pairs.size * (64 * kRoundoff);
+  const Eight sum_error = broadcast(area * pairs.length + kFloor);
+  const Eight numerator_error = multiply_add(broadcast(area), sides.distance, broadcast(kFloor));
+  const Eight inverse = broadcast(1.0f) / sides.sum;
+  const Eight t = sides.numerator * inverse;
+  const Eight magnitude = absolute(sides.sum), t_size = absolute(t), twice = absolute(inverse + inverse);
+  const Eight slack = multiply_add(t_size, broadcast(8 * kRoundoff), broadcast(kTiny));
+  const Eight radius = multiply_add(multiply_add(t_size, sum_error, numerator_error), twice, slack);
+  found.first = t - radius, found.last = t + radius;
+  found.steep = less_equal(broadcast(4.0f) * sum_error, magnitude);
+  const uint32_t early = less_equal(found.first, pairs.latest), late = less_equal(pairs.earliest, found.last);
+  found.possible = sides.inside & (~found.steep | (early & late));
+  // Strictly inside, and t surely not too early.
+  found.sure = found.possible & found.steep & strictly_inside(sides) & less_equal(pairs.earliest, found.first);
+  return found;
+}
+
+/// Bits of lanes whose ray may hit its triangle within its range of t, and of those whose ray surely does there.
+struct AnyHits {
+  uint32_t possible = 0, sure = 0;
+};
+
+/// Without the bounds of t, and so without a division. kEarlyOut: a jump where nothing is possible.
+template <bool kEarlyOut>
+HWY_INLINE AnyHits meet_any(const TrianglePairs& pairs) {
+  const PairSides sides = sides_of(pairs);
+  if (kEarlyOut && sides.inside == 0) return {};
+  const float area = pairs.size * pairs.size * (64 * kRoundoff);
+  const Eight sum_error = broadcast(area * pairs.length + kFloor);
+  const Eight numerator_error = multiply_add(broadcast(area), sides.distance, broadcast(kFloor));
+  const Eight magnitude = absolute(sides.sum), numerator = times_sign(sides.numerator, sides.sum);
+  const Eight after = subtract_product(numerator, pairs.earliest, magnitude);  // t - earliest, times the sum
+  const Eight before = multiply_add(pairs.latest, magnitude, broadcast(0.0f) - numerator);
+  const Eight per_t = multiply_add(magnitude, broadcast(8 * kRoundoff), sum_error);
+  const Eight rest = multiply_add(magnitude, broadcast(kTiny), numerator_error);
+  const Eight after_error = multiply_add(absolute(pairs.earliest), per_t, rest);
+  const Eight before_error = multiply_add(absolute(pairs.latest), per_t, rest);
+  const uint32_t steep = less_equal(broadcast(4.0f) * sum_error, magnitude);
+  const uint32_t in_time =
+      less_equal(broadcast(0.0f) - after_error, after) & less_equal(broadcast(0.0f) - before_error, before);
+  const uint32_t surely = less_equal(after_error, after) & less_equal(before_error, before);
+  return {sides.inside & (~steep | in_time), sides.inside & steep & surely & strictly_inside(sides)};
+}
 
 /// Bits of triangles that the ray may hit, bits of those that it surely hits, and where.
 struct Candidates {
@@ -93,58 +200,38 @@ HWY_INLINE uint32_t not_behind(const Candidates& found, float bound) {
   return found.possible & less_equal(load(found.earliest), broadcast(bound));
 }
 
-/// A ray against eight triangles.
+/// A ray against the triangles of leaves.
+template <class Kept>
 struct TriangleFilter {
-  EightVectors origin, direction;
-  Eight earliest;
+  Kept origin[3], direction[3];
+  Kept earliest;
   float length;
 
   HWY_INLINE void prepare(const Ray& ray) {
-    origin = broadcast(ray.origin);
-    direction = broadcast(ray.direction);
-    earliest = broadcast(ray.tmin);
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis] = kept<Kept>(ray.origin[axis]);
+      direction[axis] = kept<Kept>(ray.direction[axis]);
+    }
+    earliest = kept<Kept>(ray.tmin);
     length = std::max(std::max(std::abs(ray.direction.x), std::abs(ray.direction.y)), std::abs(ray.direction.z));
+  }
+
+  HWY_INLINE TrianglePairs pairs(const WideLeaf& leaf, ChildRef ref, float bound) const {
+    return {broadcast(origin),    broadcast(direction),         load_corner(leaf, 0), load_corner(leaf, 1),
+            load_corner(leaf, 2), broadcast(earliest),          broadcast(bound),     length,
+            size_of(ref),         (1u << triangles_of(ref)) - 1};
   }
 
   /// Returns found.possible. kEarlyOut: where it is 0, `found` may not be set.
   template <bool kEarlyOut>
   HWY_INLINE uint32_t test(const WideLeaf& leaf, ChildRef ref, float bound, Candidates& found) const {
-    constexpr float kFloor = 0x1p-56f, kTiny = 0x1p-100f;  // cover what underflows
-    const float size = size_of(ref);
-    const EightVectors a = load_corner(leaf, 0);
-    const EightVectors to_a = a - origin, ab = load_corner(leaf, 1) - a, ac = load_corner(leaf, 2) - a;
-    const EightVectors moment = cross(direction, to_a), normal = cross(ab, ac);
-    const Eight sum = dot(direction, normal), minus_b = dot(moment, ac), weight_c = dot(moment, ab);
-    const Eight weight_a = sum + minus_b - weight_c;
-    const Eight distance = largest_component(to_a);
-    const float scale = 128 * kRoundoff * length * size;
-    const Eight error = multiply_add(broadcast(scale), distance, broadcast(scale * size + kFloor));
-    const Eight weight_b = broadcast(0.0f) - minus_b;
-    const Eight lowest = min(min(weight_a, weight_b), weight_c), highest = max(max(weight_a, weight_b), weight_c);
-    const Eight below = broadcast(0.0f) - error;
-    const uint32_t not_negative = less_equal(below, lowest), not_positive = less_equal(highest, error);
-    const uint32_t inside = (not_negative | not_positive) & ((1u << triangles_of(ref)) - 1);
-    if (kEarlyOut && inside == 0) return 0;
-
-    const float area = 64 * kRoundoff * size * size;
-    const Eight sum_error = broadcast(area * length + kFloor);
-    const Eight numerator_error = multiply_add(broadcast(area), distance, broadcast(kFloor));
-    const Eight inverse = broadcast(1.0f) / sum;
-    const Eight t = dot(to_a, normal) * inverse;
-    const Eight magnitude = absolute(sum), t_size = absolute(t), twice = absolute(inverse + inverse);
-    const Eight slack = multiply_add(t_size, broadcast(8 * kRoundoff), broadcast(kTiny));
-    const Eight radius = multiply_add(multiply_add(t_size, sum_error, numerator_error), twice, slack);
-    const Eight first = t - radius, last = t + radius;
-    const uint32_t steep = less_equal(broadcast(4.0f) * sum_error, magnitude);
-    const uint32_t early = less_equal(first, broadcast(bound)), late = less_equal(earliest, last);
-    store(first, found.earliest);
-    store(last, found.latest);
-    found.possible = inside & (~steep | (early & late));
-    for (uint32_t flat = found.possible & ~steep; flat != 0; flat &= flat - 1)
+    const PairHits hits = meet<kEarlyOut>(pairs(leaf, ref, bound));
+    if (kEarlyOut && hits.possible == 0) return 0;
+    store(hits.first, found.earliest);
+    store(hits.last, found.latest);
+    found.possible = hits.possible, found.sure = hits.sure;
+    for (uint32_t flat = hits.possible & ~hits.steep; flat != 0; flat &= flat - 1)
       found.earliest[std::countr_zero(flat)] = -std::numeric_limits<float>::infinity();
-    // Strictly inside, and t surely in range.
-    const uint32_t clear = ~(less_equal(lowest, error) & less_equal(below, highest));
-    found.sure = found.possible & steep & clear & less_equal(earliest, first);
     return found.possible;
   }
 };

@@ -90,8 +90,8 @@ class Confirmations {
 class NearestStream {
  public:
   struct Slot {
-    BoxFilter boxes;
-    TriangleFilter triangles;
+    BoxFilter<float> boxes;
+    TriangleFilter<float> triangles;
     ChildRef current;
     float bound;            // no hit beyond it matters
     size_t index, waiting;  // the ray, and how many leaves wait for the end of its search

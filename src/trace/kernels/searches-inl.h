@@ -125,11 +125,11 @@ HWY_INLINE void count_leaf(ChildRef leaf, TraceCounters* counters) {
 /// kPruning = false visits everything that the ray meets within its own interval.
 template <bool kCounting, bool kPruning>
 Hit nearest(const WideTree& tree, const Ray& ray, const Hit& known, float skip_before, TraceCounters* counters) {
-  BoxFilter boxes;
+  BoxFilter<Eight> boxes;
   if (!(ray.tmin <= ray.tmax)) return known;
   if (!boxes.prepare(tree, ray, skip_before)) [[unlikely]]
     return is_valid(ray) ? nearest_carefully(tree, ray, known, {skip_before, kPruning}, counters) : known;
-  TriangleFilter triangles;
+  TriangleFilter<Eight> triangles;
   triangles.prepare(ray);
   Pending<kCounting> pending(ray, known, counters);
   float bound = kPruning ? std::min(ray.tmax, known.t) : ray.tmax;
@@ -168,11 +168,11 @@ Hit nearest(const WideTree& tree, const Ray& ray, const Hit& known, float skip_b
 
 template <bool kCounting, bool kPruning>
 bool any(const WideTree& tree, const Ray& ray, float skip_before, TraceCounters* counters) {
-  BoxFilter boxes;
+  BoxFilter<Eight> boxes;
   if (!(ray.tmin <= ray.tmax)) return false;
   if (!boxes.prepare(tree, ray, skip_before)) [[unlikely]]
     return is_valid(ray) && any_carefully(tree, ray, {skip_before, kPruning}, counters);
-  TriangleFilter triangles;
+  TriangleFilter<Eight> triangles;
   triangles.prepare(ray);
   bool hit_something = false;
   Stack stack;
@@ -197,16 +197,13 @@ bool any(const WideTree& tree, const Ray& ray, float skip_before, TraceCounters*
     } else {
       const WideLeaf leaf = tree.leaf(current);
       count_leaf<kCounting>(current, counters);
-      Candidates found;
-      uint32_t bits = triangles.test<true>(leaf, current, ray.tmax, found);
-      while (bits != 0) {
-        const size_t lane = take_lowest(bits);
-        const bool is_sure = (found.sure >> lane & 1) != 0 && found.latest[lane] <= ray.tmax;
-        if (!is_sure) {
-          if constexpr (kCounting) ++counters->triangle_tests;
-          Hit hit;
-          if (!confirm(leaf, lane, ray, hit)) continue;
-        }
+      const AnyHits found = meet_any<true>(triangles.pairs(leaf, current, ray.tmax));
+      if (kPruning && found.sure != 0) return true;
+      hit_something |= found.sure != 0;
+      for (uint32_t bits = found.possible & ~found.sure; bits != 0;) {
+        if constexpr (kCounting) ++counters->triangle_tests;
+        Hit hit;
+        if (!confirm(leaf, take_lowest(bits), ray, hit)) continue;
         if (kPruning) return true;
         hit_something = true;
       }
