@@ -42,7 +42,8 @@ bool column_to_eye(const CoverageGrid& grid, const Ray& ray, SingleColumn& colum
   const double z = -dot(rows[2], to_eye);
   if (!(z > 0)) return false;
   const Vec3d q{-dot(rows[0], to_eye), -dot(rows[1], to_eye), z};
-  if (!((std::abs(q.x) <= x_most * z) & (std::abs(q.y) <= y_most * z))) return false;
+  const bool in_x = std::abs(q.x) <= x_most * z, in_y = std::abs(q.y) <= y_most * z;
+  if (!(in_x & in_y)) return false;
   const Vec3d direction = to_double(ray.direction);
   const double distance = dot(to_eye, to_eye), size = dot(direction, direction), along = dot(to_eye, direction);
   if (!(size >= 0x1p-120 && size <= 0x1p120 && distance <= 0x1p120 && along > 0)) return false;

@@ -201,7 +201,7 @@ ColumnMap choose_parallel_map(const TriangleMesh& mesh, Vec3 direction, Vec3 cen
   map.rows = {row(lines.a, lines.b), row(lines.b, lines.a), -frame.rows[2]};
   map.rows[2] = depth_row(triangles, map.rows);
   map.center = center;
-  for (const size_t i : {0, 1})
+  for (size_t i = 0; i < 2; ++i)
     if (is_fuller_above(triangles, map.rows[i])) map.rows[i] = -map.rows[i];
   return map;
 }
