@@ -216,7 +216,7 @@ constexpr Vec3 kTurnedSun{-0.42f, -0.85f, 0.31f};
 void RaysSuite::run_turned() {
   const int turns = settings_.quick ? 5 : kTurns;
   std::vector<Turned> all;
-  for (const std::string name : {"turned", "again"}) {
+  for (const std::string name : {"turned", "again"}) {  // `turn` of "again" is the number of the copy
     for (int turn = 0; turn < turns; ++turn) {
       const Rotation rotation(name == "turned" ? turn : 0);
       TriangleMesh turned = scene_.mesh;

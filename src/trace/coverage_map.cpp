@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "raygrain/ray_frame.h"
@@ -54,7 +53,7 @@ using Corners = std::array<Vec3d, 3>;
 /// All triangles, or of large meshes one of every few, in no pattern.
 std::vector<Corners> sample_triangles(const TriangleMesh& mesh) {
   std::vector<Corners> sample;
-  const size_t count = mesh.triangle_count(), step = count / kMostTriangles + 1;
+  const size_t count = mesh.triangle_count(), step = (count + kMostTriangles - 1) / kMostTriangles;
   Random random(kSeed);
   for (size_t begin = 0; begin < count; begin += step) {
     const size_t id = begin + random.below(std::min(step, count - begin));
@@ -93,22 +92,36 @@ GridLines lines_along(const EdgeBundle& direction, const std::vector<EdgeBundle>
   return lines;
 }
 
-/// What edges cross of both, squared, if cells are stretched as suits them best.
+/// How much longer than wide cells are, so that edges cross both kinds of lines as often.
+double stretch(const GridLines& a, const GridLines& b) {
+  const double more = std::max(a.crossings, b.crossings), less = std::min(a.crossings, b.crossings);
+  return more < kMostStretch * less ? more / less : kMostStretch;
+}
+
+/// What edges cross of both, squared, with cells of the same area whatever the pair.
 double price(const GridLines& a, const GridLines& b) {
-  const double sine = std::abs(cross(a.along, b.along));
-  return sine < kLeastSine ? std::numeric_limits<double>::infinity() : a.crossings * b.crossings / sine;
+  const double sine = std::abs(cross(a.along, b.along)), longer = stretch(a, b);
+  if (sine < kLeastSine) return std::numeric_limits<double>::infinity();
+  const double crossed = std::min(a.crossings, b.crossings) + std::max(a.crossings, b.crossings) / longer;
+  return crossed * crossed * longer / sine;
 }
 
 struct GridPair {
   GridLines a{{1, 0}, 1}, b{{0, 1}, 1};
 };
 
-/// The best of all pairs along edges: as a function of one direction the price is least along some edge.
+/// The best of all pairs along edges; where all are nearly along one line, the longest of them and what is across it.
 GridPair choose_pair(const std::vector<EdgeBundle>& edges) {
   GridPair best;
-  double least = std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity(), longest = 0;
   std::vector<GridLines> all;
-  for (const EdgeBundle& edge : edges) all.push_back(lines_along(edge, edges));
+  for (const EdgeBundle& edge : edges) {
+    const GridLines& lines = all.emplace_back(lines_along(edge, edges));
+    const double square = edge.sum.x * edge.sum.x + edge.sum.y * edge.sum.y;
+    if (!(square > longest)) continue;
+    longest = square;
+    best = {lines, lines_along({{-edge.sum.y, edge.sum.x}, -1}, edges)};
+  }
   for (size_t i = 0; i < all.size(); ++i)
     for (size_t j = 0; j < i; ++j)
       if (const double p = price(all[i], all[j]); p < least) least = p, best = {all[i], all[j]};
@@ -130,7 +143,7 @@ GridLines refine(const GridLines& lines, const GridLines& other, const std::vect
 
 GridPair choose_lines(const std::vector<Vec2d>& edges) {
   const GridPair coarse = choose_pair(bundle(edges, kCoarse));
-  if (coarse.a.number < 0) return coarse;  // no edges, or all along one line
+  if (coarse.a.number < 0 || coarse.b.number < 0) return coarse;  // nothing to be refined
   const std::vector<EdgeBundle> fine = bundle(edges, kCoarse * kFinePerCoarse);
   const GridLines a = refine(coarse.a, coarse.b, fine), b = refine(coarse.b, a, fine);
   return a.crossings < b.crossings ? GridPair{b, a} : GridPair{a, b};  // however the scene is turned
@@ -176,6 +189,7 @@ Vec3d depth_row(const std::vector<Corners>& triangles, const std::array<Vec3d, 3
 /// Is more of the mesh in the greater half of what it takes up along a row? Such rows are turned around, so that cells
 /// come in the same order in memory however the scene is turned.
 bool is_fuller_above(const std::vector<Corners>& triangles, Vec3d row) {
+  if (triangles.empty()) return false;
   double lo = std::numeric_limits<double>::infinity(), hi = -lo, sum = 0;
   for (const Corners& p : triangles) {
     const double at = dot(row, p[0]);
@@ -191,10 +205,9 @@ ColumnMap choose_parallel_map(const TriangleMesh& mesh, Vec3 direction, Vec3 cen
   const RayFrame frame = *parallel_frame(FrameKind::kRotation, direction, center);
   const std::vector<Corners> triangles = sample_triangles(mesh);
   const GridPair lines = choose_lines(edges_across(triangles, frame));
-  const double most = std::max(lines.a.crossings, lines.b.crossings), least = most / kMostStretch;
-  // Lines are as far apart as edges cross them: the dearer ones by one.
+  const double longer = stretch(lines.a, lines.b);
   const auto row = [&](const GridLines& one, const GridLines& other) {
-    const double size = std::min(1.0, std::max(other.crossings, least) / std::max(one.crossings, least));
+    const double size = one.crossings > other.crossings ? 1 / longer : 1;
     return frame.rows[0] * (-one.along.y * size) + frame.rows[1] * (one.along.x * size);
   };
   ColumnMap map;

@@ -1,8 +1,9 @@
 // The map of parallel rays: it turns with the scene, goes along its edges, and is a good one whatever it is given.
 #include "trace/coverage_map.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -66,8 +67,8 @@ TEST(CoverageMap, TurnsWithTheScene) {
   const ColumnMap still = choose_parallel_map(scene, to_float(light), {});
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     Random random(seed);
-    const Frame axes = make_frame({}, {random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)},
-                                  {random.uniform(-1, 1), 0.3, 1});
+    const Vec3d forward{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
+    const Frame axes = make_frame({}, forward, {random.uniform(-1, 1), 0.3, 1});
     TriangleMesh mesh = scene;
     for (Vec3& vertex : mesh.vertices) vertex = to_float(to_world_direction(axes, to_double(vertex)));
     const ColumnMap map = choose_parallel_map(mesh, to_float(to_world_direction(axes, light)), {});
@@ -77,21 +78,53 @@ TEST(CoverageMap, TurnsWithTheScene) {
   }
 }
 
+void expect_good_map(const TriangleMesh& mesh, Vec3 light) {
+  const ColumnMap map = choose_parallel_map(mesh, light, {});
+  const Vec3d along = normalized(to_double(light));
+  const auto& [x, y, s] = map.rows;
+  EXPECT_LT(std::max(std::abs(dot(x, along)), std::abs(dot(y, along))), 1e-12);
+  EXPECT_LE(dot(s, along), -0.5);
+  for (const Vec3d row : map.rows) EXPECT_LE(length(row), 1 + 1e-12);
+  EXPECT_GE(std::min(length(x), length(y)), 0.25 - 1e-12);
+  EXPECT_GE(sine(x, y), 0.25 - 1e-6);
+}
+
 // Whatever the mesh: columns stay columns, no row is long, and the three are far from lying in a plane.
 TEST(CoverageMap, IsAGoodOneForAllFamilies) {
   for (uint64_t seed = 1; seed <= 10; ++seed)
     for (const NamedMesh& family : mesh_families(seed)) {
+      SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
       Random random(seed);
       const Vec3d light{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-      const ColumnMap map = choose_parallel_map(family.mesh, to_float(light), {});
-      const Vec3d along = normalized(to_double(to_float(light)));
-      const auto& [x, y, s] = map.rows;
-      EXPECT_LT(std::max(std::abs(dot(x, along)), std::abs(dot(y, along))), 1e-12) << family.name << " seed " << seed;
-      EXPECT_LE(dot(s, along), -0.5) << family.name << " seed " << seed;
-      for (const Vec3d row : map.rows) EXPECT_LE(length(row), 1 + 1e-12) << family.name << " seed " << seed;
-      EXPECT_GE(std::min(length(x), length(y)), 0.25 - 1e-12) << family.name << " seed " << seed;
-      EXPECT_GE(sine(x, y), 0.25 - 1e-6) << family.name << " seed " << seed;
+      expect_good_map(family.mesh, to_float(light));
     }
+}
+
+/// Thin triangles from points of a square to a hair beside `along` from there.
+TriangleMesh needles(Vec3 along) {
+  Random random(4);
+  TriangleMesh mesh;
+  for (uint32_t i = 0; i < 50; ++i) {
+    const Vec3 at = to_float({random.uniform(), 0, random.uniform()});
+    mesh.vertices.insert(mesh.vertices.end(), {at, at + along, at + along + Vec3{1e-5f, 0, 0}});
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  return mesh;
+}
+
+// Edge-on, along the light, or all along one line: as good, and along that line, which turns with the scene.
+TEST(CoverageMap, IsAGoodOneForEdgesAlongOneLine) {
+  const Vec3 light{0, -1, 0};
+  expect_good_map(needles({0, 1, 0}), light);
+  expect_good_map({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, light);
+  for (const double turn : {0.1, 0.9, 1.7, 2.8}) {
+    const Vec3d along{std::cos(turn), 0.2, std::sin(turn)};
+    const TriangleMesh mesh = needles(to_float(along));
+    expect_good_map(mesh, light);
+    const ColumnMap map = choose_parallel_map(mesh, light, {});
+    const Vec3d flat{along.x, 0, along.z};
+    EXPECT_LT(std::min(std::abs(dot(map.rows[0], flat)), std::abs(dot(map.rows[1], flat))), 0.02) << turn;
+  }
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <type_traits>
 
 #include "trace/kernels/eight-inl.h"
@@ -21,13 +22,13 @@ namespace {
 
 constexpr float kRoundoff = 0x1p-24f;
 
-/// Lanes serve for rays and scenes of these sizes; others take the careful path.
+/// Floats serve for rays and scenes of these sizes; others take the careful path.
 constexpr float kLeast = 0x1p-30f, kGreatest = 0x1p30f;
 /// ... and for origins at most so many scene sizes away.
 constexpr float kFarthest = 0x1p10f;
 
-/// Numbers of a ray are kept as floats where many rays are in flight, which a first cache has to hold, and as vectors
-/// where one ray is alone, in registers.
+/// Numbers of a ray are kept as floats where many rays are in flight, so that they fit the first cache; as vectors, in
+/// registers, where a ray is alone.
 template <class Kept>
 HWY_INLINE Kept kept(float x) {
   if constexpr (std::is_same_v<Kept, float>)
@@ -130,8 +131,21 @@ HWY_INLINE uint32_t strictly_inside(const PairSides& s) {
   return ~(less_equal(s.lowest, s.error) & less_equal(broadcast(0.0f) - s.error, s.highest));
 }
 
-/// Bits of lanes whose ray may hit its triangle, and of those whose ray surely does; the bounds of t, unknown where it
-/// is not steep.
+/// Bounds of the errors of sum and numerator, and bits of lanes where the sum's is small beside it.
+struct PairErrors {
+  Eight sum, numerator;
+  uint32_t steep;
+};
+
+HWY_INLINE PairErrors errors_of(const TrianglePairs& pairs, const PairSides& sides) {
+  const float area = pairs.size * pairs.size * (64 * kRoundoff);
+  const Eight sum = broadcast(area * pairs.length + kFloor);
+  return {sum, multiply_add(broadcast(area), sides.distance, broadcast(kFloor)),
+          less_equal(broadcast(4.0f) * sum, absolute(sides.sum))};
+}
+
+/// Bits of lanes whose ray may hit its triangle, and of those whose ray surely does if `last` is not too late; the
+/// bounds of t, unknown where it is not steep.
 struct PairHits {
   Eight first, last;
   uint32_t possible = 0, sure = 0, steep = 0;
@@ -143,16 +157,14 @@ HWY_INLINE PairHits meet(const TrianglePairs& pairs) {
   const PairSides sides = sides_of(pairs);
   PairHits found;  // NOLINT: its bounds are written below
   if (kEarlyOut && sides.inside == 0) return found;
-  const float area = pairs.size * pairs.size * (64 * kRoundoff);
-  const Eight sum_error = broadcast(area * pairs.length + kFloor);
-  const Eight numerator_error = multiply_add(broadcast(area), sides.distance, broadcast(kFloor));
+  const PairErrors errors = errors_of(pairs, sides);
   const Eight inverse = broadcast(1.0f) / sides.sum;
   const Eight t = sides.numerator * inverse;
-  const Eight magnitude = absolute(sides.sum), t_size = absolute(t), twice = absolute(inverse + inverse);
+  const Eight t_size = absolute(t), twice = absolute(inverse + inverse);
   const Eight slack = multiply_add(t_size, broadcast(8 * kRoundoff), broadcast(kTiny));
-  const Eight radius = multiply_add(multiply_add(t_size, sum_error, numerator_error), twice, slack);
+  const Eight radius = multiply_add(multiply_add(t_size, errors.sum, errors.numerator), twice, slack);
   found.first = t - radius, found.last = t + radius;
-  found.steep = less_equal(broadcast(4.0f) * sum_error, magnitude);
+  found.steep = errors.steep;
   const uint32_t early = less_equal(found.first, pairs.latest), late = less_equal(pairs.earliest, found.last);
   found.possible = sides.inside & (~found.steep | (early & late));
   // Strictly inside, and t surely not too early.
@@ -170,21 +182,18 @@ template <bool kEarlyOut>
 HWY_INLINE AnyHits meet_any(const TrianglePairs& pairs) {
   const PairSides sides = sides_of(pairs);
   if (kEarlyOut && sides.inside == 0) return {};
-  const float area = pairs.size * pairs.size * (64 * kRoundoff);
-  const Eight sum_error = broadcast(area * pairs.length + kFloor);
-  const Eight numerator_error = multiply_add(broadcast(area), sides.distance, broadcast(kFloor));
+  const PairErrors errors = errors_of(pairs, sides);
   const Eight magnitude = absolute(sides.sum), numerator = times_sign(sides.numerator, sides.sum);
   const Eight after = subtract_product(numerator, pairs.earliest, magnitude);  // t - earliest, times the sum
   const Eight before = multiply_add(pairs.latest, magnitude, broadcast(0.0f) - numerator);
-  const Eight per_t = multiply_add(magnitude, broadcast(8 * kRoundoff), sum_error);
-  const Eight rest = multiply_add(magnitude, broadcast(kTiny), numerator_error);
+  const Eight per_t = multiply_add(magnitude, broadcast(8 * kRoundoff), errors.sum);
+  const Eight rest = multiply_add(magnitude, broadcast(kTiny), errors.numerator);
   const Eight after_error = multiply_add(absolute(pairs.earliest), per_t, rest);
   const Eight before_error = multiply_add(absolute(pairs.latest), per_t, rest);
-  const uint32_t steep = less_equal(broadcast(4.0f) * sum_error, magnitude);
   const uint32_t in_time =
       less_equal(broadcast(0.0f) - after_error, after) & less_equal(broadcast(0.0f) - before_error, before);
   const uint32_t surely = less_equal(after_error, after) & less_equal(before_error, before);
-  return {sides.inside & (~steep | in_time), sides.inside & steep & surely & strictly_inside(sides)};
+  return {sides.inside & (~errors.steep | in_time), sides.inside & errors.steep & surely & strictly_inside(sides)};
 }
 
 /// Bits of triangles that the ray may hit, bits of those that it surely hits, and where.
