@@ -26,7 +26,8 @@ constexpr TreePrices kWidePrices{15, 20, 28, 25}, kColumnPrices{35, 22, 24, 110}
 constexpr double kWalk = 180;  // a local search: finding the area, and how far its region reaches
 /// Of a coverage: a ray, a triangle of its cell, an intersection; and how much longer a ray waits for a grid of twice
 /// the size, from a megabyte on, and from 15 megabytes on.
-constexpr double kCell = 27, kCellTest = 11.5, kCellConfirmation = 35, kFarther = 5, kMuchFarther = 8;
+constexpr double kCell = 27, kCellConfirmation = 35, kFarther = 5, kMuchFarther = 8;
+constexpr double kCellTest = 11.5, kCellTestInCache = 7;  // the latter of any hits, in grids of up to a megabyte
 
 /// log2(1 + x), with lines between the powers of two: the library's logarithms differ.
 double octaves(double x) {
@@ -135,7 +136,8 @@ class Pricing {
     if (is_plane && !any_) coverage.intersect(points, common, hits, rest, {}, 1, &c);
     if (!is_plane && any_) coverage.occluded_towards(points, common, flags, rest, {}, 1, &c);
     if (!is_plane && !any_) coverage.intersect_from(common, points, hits, rest, {}, 1, &c);
-    const double sum = kCellTest * static_cast<double>(c.triangle_tests) +
+    const bool is_in_cache = any_ && coverage.memory_bytes() <= size_t{1} << 20;
+    const double sum = (is_in_cache ? kCellTestInCache : kCellTest) * static_cast<double>(c.triangle_tests) +
                        kCellConfirmation * static_cast<double>(c.confirmations) +
                        global * static_cast<double>(rest.size());
     const double size = octaves(static_cast<double>(coverage.memory_bytes()) * 0x1p-20);
