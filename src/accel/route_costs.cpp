@@ -27,7 +27,7 @@ constexpr double kWalk = 180;  // a local search: finding the area, and how far 
 /// Of a coverage: a ray, a triangle of its cell, an intersection; and how much longer a ray waits for a grid of twice
 /// the size, from a megabyte on, and from 15 megabytes on.
 constexpr double kCell = 27, kCellConfirmation = 35, kFarther = 5, kMuchFarther = 8;
-constexpr double kCellTest = 11.5, kCellTestInCache = 7;  // the latter of any hits, in grids of up to a megabyte
+constexpr double kCellTest = 11.5, kCellTestInCache = 7;  // the latter for any hits, in grids of up to a megabyte
 
 /// log2(1 + x), with lines between the powers of two: the library's logarithms differ.
 double octaves(double x) {
@@ -136,11 +136,10 @@ class Pricing {
     if (is_plane && !any_) coverage.intersect(points, common, hits, rest, {}, 1, &c);
     if (!is_plane && any_) coverage.occluded_towards(points, common, flags, rest, {}, 1, &c);
     if (!is_plane && !any_) coverage.intersect_from(common, points, hits, rest, {}, 1, &c);
-    const bool is_in_cache = any_ && coverage.memory_bytes() <= size_t{1} << 20;
-    const double sum = (is_in_cache ? kCellTestInCache : kCellTest) * static_cast<double>(c.triangle_tests) +
+    const double megabytes = static_cast<double>(coverage.memory_bytes()) * 0x1p-20, size = octaves(megabytes);
+    const double sum = (any_ && megabytes <= 1 ? kCellTestInCache : kCellTest) * static_cast<double>(c.triangle_tests) +
                        kCellConfirmation * static_cast<double>(c.confirmations) +
                        global * static_cast<double>(rest.size());
-    const double size = octaves(static_cast<double>(coverage.memory_bytes()) * 0x1p-20);
     return kCell + kFarther * size + kMuchFarther * std::max(0.0, size - 4) + per_ray(sum, rays.size());
   }
 
