@@ -34,20 +34,20 @@ class Laps {
   double last_ = 0;
 };
 
+/// All but the total.
+inline constexpr double BuildTimes::*kTimedParts[] = {&BuildTimes::orientations, &BuildTimes::candidates,
+                                                      &BuildTimes::partition, &BuildTimes::stop, &BuildTimes::nodes};
+
 /// Charges the parts of what was done side by side to the wall-clock time that it took together.
 template <class Piece>
 void add_scaled(BuildTimes& times, std::span<const Piece> pieces, double seconds) {
   BuildTimes sum;
   for (const auto& piece : pieces) {
     sum.total += piece.times.total;
-    for (const auto part : {&BuildTimes::orientations, &BuildTimes::candidates, &BuildTimes::partition,
-                            &BuildTimes::stop, &BuildTimes::nodes})
-      sum.*part += piece.times.*part;
+    for (const auto part : kTimedParts) sum.*part += piece.times.*part;
   }
   if (!(sum.total > 0)) return;
-  for (const auto part : {&BuildTimes::orientations, &BuildTimes::candidates, &BuildTimes::partition, &BuildTimes::stop,
-                          &BuildTimes::nodes})
-    times.*part += sum.*part * (seconds / sum.total);
+  for (const auto part : kTimedParts) times.*part += sum.*part * (seconds / sum.total);
 }
 
 }  // namespace raygrain::builder

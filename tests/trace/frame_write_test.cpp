@@ -6,29 +6,14 @@
 
 #include "raygrain/build.h"
 
-#include "base/random.h"
+#include "support/triangle_soup.h"
 #include "trace/frame_memory.h"
 
 namespace raygrain {
 namespace {
 
-TriangleMesh soup(uint32_t count, uint64_t seed) {
-  Random random(seed);
-  const auto point = [&](double size) {
-    const double x = random.uniform(0, size), y = random.uniform(0, size);
-    return to_float(Vec3d{x, y, random.uniform(0, size)});
-  };
-  TriangleMesh mesh;
-  for (uint32_t i = 0; i < count; ++i) {
-    const Vec3 corner = point(100);
-    mesh.vertices.insert(mesh.vertices.end(), {corner, corner + point(1), corner + point(1)});
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  return mesh;
-}
-
 TEST(FrameTree, ThreadsDecideNoByte) {
-  const TriangleMesh mesh = soup(40000, 4);
+  const TriangleMesh mesh = test::triangle_soup(40000, 4);
   const auto corners = std::make_shared<const TriangleCorners>(mesh);
   const RayFrame frame = *parallel_frame(FrameKind::kRotation, {0.3f, -1, 0.2f}, {50, 50, 50});
   std::vector<Bounds> boxes;

@@ -9,8 +9,8 @@
 #include "raygrain/error.h"
 #include "raygrain/wide.h"
 
-#include "base/random.h"
 #include "support/mesh_families.h"
+#include "support/triangle_soup.h"
 #include "trace/wide_tree.h"
 
 namespace raygrain {
@@ -20,19 +20,6 @@ Bvh binned_tree(const TriangleMesh& mesh) {
   BuildOptions options;
   options.merge_leaves = true;
   return build_binned(triangle_bounds(mesh), triangle_centroids(mesh), options);
-}
-
-TriangleMesh soup(uint32_t count, uint64_t seed) {
-  Random random(seed);
-  const auto coordinate = [&] { return static_cast<float>(random.uniform()); };
-  TriangleMesh mesh;
-  for (uint32_t i = 0; i < count; ++i) {
-    const Vec3 corner{100 * coordinate(), 100 * coordinate(), 100 * coordinate()};
-    mesh.vertices.insert(mesh.vertices.end(), {corner, corner + Vec3{coordinate(), coordinate(), coordinate()},
-                                               corner + Vec3{coordinate(), coordinate(), coordinate()}});
-    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
-  }
-  return mesh;
 }
 
 TEST(Wide, RefusesBadOptions) {
@@ -79,7 +66,7 @@ TEST(Isa, TheEnvironmentChooses) {
 }
 
 TEST(Wide, ThreadsDecideNoByte) {
-  const TriangleMesh mesh = soup(20000, 3);
+  const TriangleMesh mesh = test::triangle_soup(20000, 3);
   const Bvh binary = binned_tree(mesh);
   const WideTree one = collapse(binary, mesh, {.threads = 1});
   ASSERT_GT(one.leaves, 4000u) << "several threads must share the work";
