@@ -135,30 +135,31 @@ Piece ReferenceBuilder<Reference>::build_piece(const OpenRange& root) const {
   return piece;
 }
 
+/// For all of the pieces, and of what lies above them.
 template <class Reference>
-Bvh ReferenceBuilder<Reference>::assemble(std::vector<Piece>& pieces, BuildLog* log) const {
-  struct Place {
-    uint32_t root, first_node, first_prim;
-  };
-  std::vector<Place> places(pieces.size());
-  size_t node_count = 1, prim_count = 0;
+Bvh ReferenceBuilder<Reference>::make_room(std::span<const Piece> pieces, BuildLog* log) const {
+  size_t node_count = top_.size(), prim_count = 0;
   for (const Piece& piece : pieces) {
     node_count += piece.nodes.size() - 1;
     prim_count += piece.prims.size();
   }
-  node_count += top_.size() - 1;
   Bvh bvh;
   bvh.nodes.resize(node_count);
   bvh.prims.resize(prim_count);
   bvh.split_references = prim_count > input_.bounds.size();
-  if (log) log->nodes.resize(node_count);
-  if (log) {
-    log->peak_bytes += memory_bytes(bvh);
-    for (const Piece& piece : pieces)
-      log->peak_bytes += piece.nodes.capacity() * sizeof(Bvh::Node) + piece.prims.capacity() * sizeof(uint32_t);
-  }
+  if (!log) return bvh;
+  log->nodes.resize(node_count);
+  log->peak_bytes += memory_bytes(bvh);
+  for (const Piece& piece : pieces)
+    log->peak_bytes += piece.nodes.capacity() * sizeof(Bvh::Node) + piece.prims.capacity() * sizeof(uint32_t);
+  return bvh;
+}
 
-  // Places, in the order in which one thread alone would have made the nodes.
+/// In the order in which one thread alone would have made the nodes. Writes those above the pieces.
+template <class Reference>
+std::vector<PiecePlace> ReferenceBuilder<Reference>::place_pieces(std::span<const Piece> pieces, Bvh& bvh,
+                                                                  BuildLog* log) const {
+  std::vector<PiecePlace> places(pieces.size());
   struct Visit {
     uint32_t top, place;
   };
@@ -181,11 +182,17 @@ Bvh ReferenceBuilder<Reference>::assemble(std::vector<Piece>& pieces, BuildLog* 
     open.push_back({node.node.first, next_node});
     next_node += 2;
   }
+  return places;
+}
 
+template <class Reference>
+Bvh ReferenceBuilder<Reference>::assemble(std::vector<Piece>& pieces, BuildLog* log) const {
+  Bvh bvh = make_room(pieces, log);
+  const std::vector<PiecePlace> places = place_pieces(pieces, bvh, log);
   parallel_for(pieces.size(), 1, options_.threads, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) {
       Piece& piece = pieces[i];
-      const Place& place = places[i];
+      const PiecePlace& place = places[i];
       for (size_t k = 0; k < piece.nodes.size(); ++k) {
         const size_t at = k == 0 ? place.root : place.first_node + k - 1;
         Bvh::Node node = piece.nodes[k];

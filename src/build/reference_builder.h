@@ -35,6 +35,11 @@ struct Piece {
   BuildTimes times;
 };
 
+/// Where a piece goes in the whole tree.
+struct PiecePlace {
+  uint32_t root, first_node, first_prim;
+};
+
 template <class Reference>
 class ReferenceBuilder {
  public:
@@ -92,6 +97,8 @@ class ReferenceBuilder {
     return std::span<const Reference>(buffer(node.in_second)).subspan(node.begin, node.context.count);
   }
   Bvh assemble(std::vector<Piece>& pieces, BuildLog* log) const;
+  Bvh make_room(std::span<const Piece> pieces, BuildLog* log) const;
+  std::vector<PiecePlace> place_pieces(std::span<const Piece> pieces, Bvh& bvh, BuildLog* log) const;
 
   const Input& input_;
   const BuildOptions& options_;

@@ -74,6 +74,41 @@ ChartPanel scatter(const StudyResults& study, const std::string& title, const st
   return panel;
 }
 
+/// Marks of the authors' raw results; what they printed is told with each.
+void add_published(std::string_view series, const PaperValues& raw, const PaperValues& printed, ChartPanel& panel) {
+  std::vector<ChartPoint> points = published_points(series, raw, "");
+  for (size_t i = 0; i < points.size(); ++i)
+    points[i].label = fmt::format("authors' raw results; printed: {:.3f}", printed[i]);
+  panel.published.insert(panel.published.end(), points.begin(), points.end());
+}
+
+/// In how many groups siblings overlap less under kFull than under the baseline, and where by most.
+struct Lessened {
+  size_t groups = 0, less = 0;
+  std::string most;
+};
+
+Lessened lessened(const StudyResults& study, std::span<const std::string> groups, const RowValue& overlap) {
+  Lessened result;
+  double least = kNotMeasured;
+  for (const std::string& group : groups) {
+    const auto here = [&](std::string_view recipe) {
+      return mean_of(
+          filtered(study.rows, [&](const ResultRow& r) { return r.recipe == recipe && group_label(r) == group; }),
+          overlap);
+    };
+    const double difference = here(kFull) - here(kBaseline);
+    if (std::isnan(difference)) continue;
+    ++result.groups;
+    result.less += difference < 0;
+    if (!(difference >= least)) {
+      least = difference;
+      result.most = group;
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 Chart overlap_cost_figure(const StudyResults& study) {
@@ -122,43 +157,20 @@ Chart overlap_figure(const StudyResults& study) {
   chart.panels = user_bars(study.rows, recipes);
   ChartPanel panel = group_bars(study.rows, recipes, "As in the paper: overlap, levels 0 to 4, culled",
                                 "mean common area per smaller sibling's area", overlap);
-  const auto add = [&](std::string_view series, const PaperValues& raw, const PaperValues& printed) {
-    std::vector<ChartPoint> points = published_points(series, raw, "");
-    for (size_t i = 0; i < points.size(); ++i)
-      points[i].label = fmt::format("authors' raw results; printed: {:.3f}", printed[i]);
-    panel.published.insert(panel.published.end(), points.begin(), points.end());
-  };
-  add(kFull, kOverlapOfFull, kPrintedOverlapOfFull);
-  add(kBaseline, kOverlapOfStandard, kPrintedOverlapOfStandard);
-
-  size_t groups = 0, less = 0;
-  double least = kNotMeasured;
-  std::string least_group;
-  for (const std::string& group : panel.groups) {
-    const auto here = [&](std::string_view recipe) {
-      return mean_of(
-          filtered(study.rows, [&](const ResultRow& r) { return r.recipe == recipe && group_label(r) == group; }),
-          overlap);
-    };
-    const double difference = here(kFull) - here(kBaseline);
-    if (std::isnan(difference)) continue;
-    ++groups;
-    less += difference < 0;
-    if (!(difference >= least)) {
-      least = difference;
-      least_group = group;
-    }
-  }
+  add_published(kFull, kOverlapOfFull, kPrintedOverlapOfFull, panel);
+  add_published(kBaseline, kOverlapOfStandard, kPrintedOverlapOfStandard, panel);
+  const Lessened than_standard = lessened(study, panel.groups, overlap);
   chart.panels.push_back(std::move(panel));
   // Two statements: less overlap on average, and least of all where rays are parallel to an axis.
-  const bool on_average = full < standard, parallel = least_group.ends_with("parallel");
+  const bool on_average = full < standard, parallel = than_standard.most.ends_with("parallel");
   chart.verdict = verdict_of(size_t{on_average} + size_t{parallel}, 2);
   const std::string users = user_sentence(study, std::string(kFull), std::string(kBaseline));
   chart.finding = fmt::format(
       "Siblings overlap by {} in trees of {} and by {} in those of {} (paper: 59 % and 66 %), less in {} of {} groups "
       "and "
       "most of all for {}{}.",
-      percent(full), kFull, percent(standard), kBaseline, less, groups, least_group, users.empty() ? "" : "; " + users);
+      percent(full), kFull, percent(standard), kBaseline, than_standard.less, than_standard.groups, than_standard.most,
+      users.empty() ? "" : "; " + users);
   chart.finding += scenes_sentence(study.rows);
   chart.notes.emplace_back(
       "Published marks are means of the authors' raw results; the printed figure differs from them by up to 10 % and "

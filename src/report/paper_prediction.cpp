@@ -63,6 +63,23 @@ double mean_error(std::span<const ResultRow> rows, std::string_view kind, const 
   return mean_of(filtered(rows, [&](const ResultRow& row) { return row.kind == kind; }), error_of(column));
 }
 
+/// Groups that have both errors, and in how many of them PAH's is the smaller one.
+struct Agreeing {
+  size_t groups = 0, agreeing = 0;
+};
+
+Agreeing count_agreeing(std::span<const ResultRow> rows, std::span<const std::string> groups) {
+  Agreeing result;
+  for (const std::string& group : groups) {
+    const std::vector<ResultRow> here = filtered(rows, [&](const ResultRow& row) { return group_label(row) == group; });
+    const double pah = mean_of(here, error_of("estimated_pah")), standard = mean_of(here, error_of("estimated_sah"));
+    if (std::isnan(pah) || std::isnan(standard)) continue;
+    ++result.groups;
+    result.agreeing += pah < standard;
+  }
+  return result;
+}
+
 }  // namespace
 
 Chart prediction_figure(const StudyResults& study) {
@@ -83,14 +100,7 @@ Chart prediction_figure(const StudyResults& study) {
   const std::vector<ChartPoint> sah = published_points(kSah, kErrorOfSah, "printed, mean of 8 scenes");
   errors.published.insert(errors.published.end(), sah.begin(), sah.end());
 
-  size_t groups = 0, agreeing = 0;
-  for (const std::string& group : errors.groups) {
-    const std::vector<ResultRow> here = filtered(rows, [&](const ResultRow& row) { return group_label(row) == group; });
-    const double pah = mean_of(here, error_of("estimated_pah")), standard = mean_of(here, error_of("estimated_sah"));
-    if (std::isnan(pah) || std::isnan(standard)) continue;
-    ++groups;
-    agreeing += pah < standard;
-  }
+  const auto [groups, agreeing] = count_agreeing(rows, errors.groups);
   chart.panels.push_back(std::move(errors));
   const double plane = mean_error(rows, "plane", "estimated_pah"), point = mean_error(rows, "point", "estimated_pah");
   if (groups > 0) chart.verdict = judge(agreeing == groups, plane, point);

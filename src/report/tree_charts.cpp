@@ -83,17 +83,13 @@ Chart recipe_prediction_chart(const StudyResults& all) {
   return chart;
 }
 
-/// Pruned cost first, then what it may come from: one tiny child beside one nearly as large as its parent.
-Chart tree_shape_chart(const StudyResults& all, const std::string& baseline) {
-  Chart chart{.title = "Shape of the trees: a small child and a large one"};
-  const RowValue small = column_value("small_child_ratio"), large = column_value("large_child_ratio"),
-                 level = column_value("max_level");
-  if (!any_measured(all.rows, level)) return chart;
-  const std::vector<ComparedRecipes> blocks = comparable(all.rows, baseline, level);
-  if (blocks.empty()) return chart;
-  const StudyResults study{all.name, all.id, blocks.front().rows};
-  if (const std::string note = left_out_note(blocks); !note.empty()) chart.notes.push_back(note);
-  const auto recipe = [](const ResultRow& row) { return row.recipe; };
+namespace {
+
+std::string recipe_of(const ResultRow& row) {
+  return row.recipe;
+}
+
+ChartPanel paid_ranking(const StudyResults& study, const std::string& baseline) {
   ChartPanel paid{.title = "What users pay: pruned cost as a multiple of " + baseline + "'s",
                   .kind = ChartKind::kRanking,
                   .y = {"geometric mean over tests of recipe / " + baseline},
@@ -107,28 +103,48 @@ Chart tree_shape_chart(const StudyResults& all, const std::string& baseline) {
                              .low = r.ratio.low,
                              .high = r.ratio.high,
                              .count = r.ratio.count});
-  chart.panels.push_back(std::move(paid));
-  if (any_measured(study.rows, small)) {
-    ChartPanel children{.title = "Measure of the smaller and the larger child, per parent's",
-                        .kind = ChartKind::kDots,
-                        .y = {"mean over inner nodes and tests"},
-                        .groups = recipe_names(study.rows),
-                        .series = {{"smaller child", "#2b7bba"}, {"larger child", "#d9480f"}}};
-    children.measured = group_means(
-        study.rows, recipe, [](const ResultRow&) { return "smaller child"; }, small);
-    for (ChartPoint& point : group_means(
-             study.rows, recipe, [](const ResultRow&) { return "larger child"; }, large))
-      children.measured.push_back(std::move(point));
-    chart.panels.push_back(std::move(children));
-  }
+  return paid;
+}
+
+ChartPanel children_dots(const StudyResults& study) {
+  ChartPanel children{.title = "Measure of the smaller and the larger child, per parent's",
+                      .kind = ChartKind::kDots,
+                      .y = {"mean over inner nodes and tests"},
+                      .groups = recipe_names(study.rows),
+                      .series = {{"smaller child", "#2b7bba"}, {"larger child", "#d9480f"}}};
+  children.measured = group_means(
+      study.rows, recipe_of, [](const ResultRow&) { return "smaller child"; }, column_value("small_child_ratio"));
+  for (ChartPoint& point : group_means(
+           study.rows, recipe_of, [](const ResultRow&) { return "larger child"; }, column_value("large_child_ratio")))
+    children.measured.push_back(std::move(point));
+  return children;
+}
+
+ChartPanel depth_ranking(const StudyResults& study) {
   ChartPanel depth{.title = "Depth of the deepest leaf",
                    .kind = ChartKind::kRanking,
                    .y = {"mean number of levels"},
                    .groups = recipe_names(study.rows),
                    .series = {{"deepest leaf", "#868e96"}}};
   depth.measured = group_means(
-      study.rows, recipe, [](const ResultRow&) { return "deepest leaf"; }, level);
-  chart.panels.push_back(std::move(depth));
+      study.rows, recipe_of, [](const ResultRow&) { return "deepest leaf"; }, column_value("max_level"));
+  return depth;
+}
+
+}  // namespace
+
+/// Pruned cost first, then what it may come from: one tiny child beside one nearly as large as its parent.
+Chart tree_shape_chart(const StudyResults& all, const std::string& baseline) {
+  Chart chart{.title = "Shape of the trees: a small child and a large one"};
+  const RowValue level = column_value("max_level");
+  if (!any_measured(all.rows, level)) return chart;
+  const std::vector<ComparedRecipes> blocks = comparable(all.rows, baseline, level);
+  if (blocks.empty()) return chart;
+  const StudyResults study{all.name, all.id, blocks.front().rows};
+  if (const std::string note = left_out_note(blocks); !note.empty()) chart.notes.push_back(note);
+  chart.panels.push_back(paid_ranking(study, baseline));
+  if (any_measured(study.rows, column_value("small_child_ratio"))) chart.panels.push_back(children_dots(study));
+  chart.panels.push_back(depth_ranking(study));
 
   const double pah = mean_of(rows_of_recipe(study.rows, "PAH+LSPH"), level),
                sah = mean_of(rows_of_recipe(study.rows, "SAH+LSPH"), level);
