@@ -118,7 +118,7 @@ std::string text_of_differences(const Row& row) {
                                             row.oracle_agrees, row.oracle_asked);
 }
 
-enum class Table { kNone, kRows, kStructured, kBuilds };
+enum class Table { kNone, kRows, kStructured, kBuilds, kSizes };
 
 /// A table that goes on needs no new header.
 bool starts(Table table) {
@@ -175,6 +175,12 @@ Json to_json(const BuildRow& b) {
           {"raygrain_bytes", b.raygrain_bytes},
           {"embree_bytes", b.embree_bytes},
           {"sah_cost", b.sah_cost}};
+}
+
+Json to_json(const SizeRow& r) {
+  return {{"scene", r.scene},      {"triangles", r.triangles}, {"rays", r.rays},
+          {"size", r.size},        {"threads", r.threads},     {"batch_ns", r.batch},
+          {"single_ns", r.single}, {"array_ns", r.array},      {"global_ns", r.global}};
 }
 
 Json geometric_means(const Results& results) {
@@ -246,6 +252,19 @@ void report(const BuildRow& row, Results& results) {
   std::fflush(stdout);
 }
 
+void report(const SizeRow& row, Results& results) {
+  results.sizes.push_back(row);
+  constexpr const char* kFormat = "{:<18} {:>9} {:<26} {:>9} {:>3} {:>9} {:>9} {:>9} {:>9} {:>13} {:>13} {:>13}\n";
+  if (starts(Table::kSizes))
+    fmt::print(kFormat, "\nscene", "triangles", "rays", "a call", "thr", "batch ns", "single ns", "array ns",
+               "global ns", "single/batch", "global/batch", "global/array");
+  const auto time = [](double ns) { return ns > 0 ? fmt::format("{:.1f}", ns) : "-"; };
+  fmt::print(kFormat, row.scene, row.triangles, row.rays, row.size, row.threads, time(row.batch), time(row.single),
+             time(row.array), time(row.global), text(row.single > 0 ? ratio(row.single, row.batch) : std::nullopt),
+             text(ratio(row.global, row.batch)), text(ratio(row.global, row.array)));
+  std::fflush(stdout);
+}
+
 void print_summary(const Results& results) {
   fmt::print("\ngeometric means of ratios (above 1: raygrain is faster)\n");
   for (const auto& [name, m] : means_of_rows(results))
@@ -271,6 +290,8 @@ void save_json(const Results& results, const std::string& path) {
   for (const Row& row : results.rows) json["rows"].push_back(to_json(row));
   json["builds"] = Json::array();
   for (const BuildRow& row : results.builds) json["builds"].push_back(to_json(row));
+  json["sizes"] = Json::array();
+  for (const SizeRow& row : results.sizes) json["sizes"].push_back(to_json(row));
   json["geomean"] = geometric_means(results);
   write_file_atomically(path, [&](std::ostream& out) { out << json.dump(2) << '\n'; });
 }

@@ -15,7 +15,7 @@
 namespace raygrain::bench {
 
 std::vector<Suite> suites() {
-  return {{"general", run_general}, {"rays", run_rays}, {"builds", run_builds}};
+  return {{"general", run_general}, {"rays", run_rays}, {"sizes", run_sizes}, {"builds", run_builds}};
 }
 
 namespace {
@@ -54,11 +54,14 @@ int run(int argc, char** argv) {
   app.add_option("--only", settings.filter, "only scenes whose source holds this text");
   app.add_option("--json", settings.json, "write all figures to this file");
   app.add_option("--threads", settings.threads, "thread counts; default 1 and all");
+  settings.sizes = {1, 10, 100, 1000, 10000, 100000, 1000000};
+  app.add_option("--sizes", settings.sizes, "rays a call, of the suite `sizes`")->capture_default_str();
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  if (std::ranges::count(settings.sizes, 0u) > 0) throw Error(ErrorCode::kUsage, "--sizes", "must be at least 1");
   check_scenes(settings, app.count("--scenes") > 0);
   check_threads(settings);
   if (!Peer::is_there()) std::puts("Embree 3 was not there at build time: raygrain alone");

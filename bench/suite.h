@@ -16,6 +16,7 @@ struct Settings {
   std::string json;               // file to write; may be empty
   std::string filter;             // names of scenes hold this
   std::vector<unsigned> threads;  // each is measured; 1 first
+  std::vector<size_t> sizes;      // rays a call, of the suite `sizes`; none is 0
 };
 
 /// One ray set, traced by one interface of raygrain and by Embree. 0 Mrays/s: not measured.
@@ -52,9 +53,21 @@ struct BuildRow {
   double sah_cost = 0;
 };
 
+/// One ray set in calls of `size` rays. Nanoseconds a ray; 0: not measured.
+struct SizeRow {
+  std::string scene;
+  size_t triangles = 0;
+  std::string rays;
+  size_t size = 0;
+  unsigned threads = 1;
+  double batch = 0, single = 0, array = 0;  // by the batch call, one a call, in an array of any rays
+  double global = 0;                        // in an array through the global tree alone
+};
+
 struct Results {
   std::vector<Row> rows;
   std::vector<BuildRow> builds;
+  std::vector<SizeRow> sizes;
 };
 
 struct BenchScene {
@@ -73,6 +86,7 @@ std::vector<Suite> suites();
 void run_general(const Settings& settings, Results& results);
 void run_builds(const Settings& settings, Results& results);
 void run_rays(const Settings& settings, Results& results);
+void run_sizes(const Settings& settings, Results& results);
 
 /// What load_bench_scene takes: the procedural scenes, in small or in both sizes, and the models of settings.scenes.
 std::vector<std::string> scene_sources(const Settings& settings);
@@ -81,6 +95,7 @@ BenchScene load_bench_scene(const std::string& source);
 /// Adds to the results and prints at once.
 void report(const Row& row, Results& results);
 void report(const BuildRow& row, Results& results);
+void report(const SizeRow& row, Results& results);
 void print_summary(const Results& results);
 void save_json(const Results& results, const std::string& path);
 

@@ -55,7 +55,9 @@ struct BatchPlan {
 };
 
 BatchPlan plan_batch(const CoverageGrid& grid, CoverageOrder order, size_t count, unsigned threads) {
-  const size_t workers = threads == 0 ? default_threads() : std::min(threads, default_threads());
+  const bool is_shared = count > kLeastRaysPerTask && threads != 1;  // asking the system costs more than a small batch
+  const size_t most_threads = is_shared ? default_threads() : 1;
+  const size_t workers = threads == 0 ? most_threads : std::min<size_t>(threads, most_threads);
   const auto grain_of = [&](size_t most) {
     const size_t turns = (count + workers * most - 1) / (workers * most);
     return std::max((count + workers * turns - 1) / (workers * turns), kLeastRaysPerTask);
