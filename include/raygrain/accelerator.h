@@ -81,8 +81,23 @@ struct LocalTree {
   double build_seconds = 0;
 };
 
-/// What happened while rays were traced (sums). Under Traversal::kWide the nodes and boxes of `local` and `global` are
-/// those of the wide trees (see WideBvh::intersect_counted).
+/// Who answered the rays of an area: those that its coverage or its tree answered, and those that are the area's and
+/// still went to the global tree. A valid ray is the area's if AreaGeometry::serves it, or if its line is within a
+/// millionth (sine) of the area's direction or ends at its point, inside the area's window. A ray that the global tree
+/// answers may be several areas', any other ray is counted once.
+struct AreaUse {
+  uint64_t covered = 0;  // answered by the area's coverage
+  uint64_t local = 0;    // the search ended in the area's tree
+  uint64_t global = 0;   // the area's, but answered by the global tree
+
+  uint64_t answered() const { return covered + local; }
+  friend bool operator==(const AreaUse&, const AreaUse&) = default;
+};
+
+/// What happened while rays were traced (sums): the same for any number of threads, and on the ways that rays take
+/// without counters. Under Traversal::kWide the nodes and boxes of `local` and `global` are those of the wide trees
+/// (see WideBvh::intersect_counted): the global tree counts them ray by ray, where otherwise it answers several at
+/// once. Calls at the same time need counters of their own.
 struct AcceleratorCounters {
   uint64_t rays = 0;
   uint64_t invalid_rays = 0;     // misses by definition
@@ -96,6 +111,7 @@ struct AcceleratorCounters {
   uint64_t cones = 0;            // ... as cones
   uint64_t global_searches = 0;  // rays that needed the global tree
   TraceCounters local, global;   // work in local trees and in the global tree
+  std::vector<AreaUse> areas;    // one for each area, once a ray was counted
 
   friend bool operator==(const AcceleratorCounters&, const AcceleratorCounters&) = default;
   void add(const AcceleratorCounters& other);
@@ -165,13 +181,16 @@ class Accelerator {
   /// Error (kUsage). 0 threads = all.
   ///
   /// From each origin along `direction`, tmax infinite.
-  void occluded(std::span<const Vec3> origins, Vec3 direction, std::span<uint8_t> flags, unsigned threads = 0) const;
-  void intersect(std::span<const Vec3> origins, Vec3 direction, std::span<Hit> hits, unsigned threads = 0) const;
+  void occluded(std::span<const Vec3> origins, Vec3 direction, std::span<uint8_t> flags, unsigned threads = 0,
+                AcceleratorCounters* counters = nullptr) const;
+  void intersect(std::span<const Vec3> origins, Vec3 direction, std::span<Hit> hits, unsigned threads = 0,
+                 AcceleratorCounters* counters = nullptr) const;
   /// From each origin to `point`: direction float32(point - origin), tmax 1.
-  void occluded_towards(std::span<const Vec3> origins, Vec3 point, std::span<uint8_t> flags,
-                        unsigned threads = 0) const;
+  void occluded_towards(std::span<const Vec3> origins, Vec3 point, std::span<uint8_t> flags, unsigned threads = 0,
+                        AcceleratorCounters* counters = nullptr) const;
   /// From `eye` along each direction, tmax infinite.
-  void intersect_from(Vec3 eye, std::span<const Vec3> directions, std::span<Hit> hits, unsigned threads = 0) const;
+  void intersect_from(Vec3 eye, std::span<const Vec3> directions, std::span<Hit> hits, unsigned threads = 0,
+                      AcceleratorCounters* counters = nullptr) const;
 
   /// One per area, or none.
   std::span<const Coverage> coverages() const;

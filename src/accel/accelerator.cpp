@@ -199,6 +199,12 @@ void AcceleratorCounters::add(const AcceleratorCounters& other) {
   global_searches += other.global_searches;
   local.add(other.local);
   global.add(other.global);
+  areas.resize(std::max(areas.size(), other.areas.size()));
+  for (size_t i = 0; i < other.areas.size(); ++i) {
+    areas[i].covered += other.areas[i].covered;
+    areas[i].local += other.areas[i].local;
+    areas[i].global += other.areas[i].global;
+  }
 }
 
 }  // namespace raygrain

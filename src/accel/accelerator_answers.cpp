@@ -9,6 +9,7 @@
 #include "raygrain/accelerator.h"
 
 #include "accel/accelerator_parts.h"
+#include "accel/own_rays.h"
 #include "accel/search.h"
 #include "base/parallel.h"
 #include "base/sizes.h"
@@ -24,30 +25,53 @@ TraceCounters* global_counters(AcceleratorCounters* counters) {
   return counters != nullptr ? &counters->global : nullptr;
 }
 
-/// answer(i, counters) for each ray; counters of threads are summed.
+constexpr size_t kChunk = 1024;
+
+/// answer(begin, end, counters) for each chunk of rays; counters of chunks are summed.
 template <class Answer>
 void for_chunks(size_t rays, unsigned threads, AcceleratorCounters* counters, const Answer& answer) {
-  constexpr size_t kChunk = 1024;
   std::mutex mutex;
   parallel_for(rays, kChunk, threads, [&](size_t begin, size_t end) {
+    if (counters == nullptr) return answer(begin, end, nullptr);
     AcceleratorCounters own;
-    for (size_t i = begin; i < end; ++i) answer(i, counters != nullptr ? &own : nullptr);
-    if (counters == nullptr) return;
+    own.areas.resize(counters->areas.size());
+    answer(begin, end, &own);
     const std::lock_guard lock(mutex);
     counters->add(own);
   });
 }
 
+/// `asked` is the place of a coverage among those that the route asks.
+void count_covered(const Route& route, size_t asked, AcceleratorCounters* counters) {
+  if (counters == nullptr) return;
+  ++counters->covered;
+  size_t area = 0;
+  for (size_t before = asked; route.covers[area] == 0 || before-- > 0;) ++area;
+  if (area < counters->areas.size()) ++counters->areas[area].covered;
+}
+
 /// Rays along an area that its coverage answers, whatever region they are in.
-std::optional<Hit> nearest_covered(const Route& route, const Ray& ray) {
-  for (const Coverage& coverage : route.asked)
-    if (const auto hit = coverage.intersect(ray)) return hit;
+std::optional<Hit> nearest_covered(const Route& route, const Ray& ray, AcceleratorCounters* counters) {
+  for (size_t i = 0; i < route.asked.size(); ++i)
+    if (const auto hit = route.asked[i].intersect(ray)) {
+      count_covered(route, i, counters);
+      return hit;
+    }
   return {};
 }
-std::optional<bool> any_covered(const Route& route, const Ray& ray) {
-  for (const Coverage& coverage : route.asked)
-    if (const auto hit = coverage.occluded(ray)) return hit;
+std::optional<bool> any_covered(const Route& route, const Ray& ray, AcceleratorCounters* counters) {
+  for (size_t i = 0; i < route.asked.size(); ++i)
+    if (const auto hit = route.asked[i].occluded(ray)) {
+      count_covered(route, i, counters);
+      return hit;
+    }
   return {};
+}
+
+void count_local(uint32_t area, bool is_local_hit, AcceleratorCounters* counters) {
+  if (counters == nullptr) return;
+  counters->local_hits += is_local_hit ? 1 : 0;
+  if (area < counters->areas.size()) ++counters->areas[area].local;
 }
 
 /// Are all hits of the ray that can be nearer than `best` known, when those with t <= exit are?
@@ -56,6 +80,17 @@ bool is_final(const Hit& best, const Ray& ray, float exit) {
 }
 
 }  // namespace
+
+void Accelerator::Parts::count_areas(AcceleratorCounters* counters) const {
+  if (counters != nullptr) counters->areas.resize(std::max(counters->areas.size(), geometries.size()));
+}
+
+void Accelerator::Parts::count_global(const Ray& ray, AcceleratorCounters* counters) const {
+  if (counters == nullptr) return;
+  ++counters->global_searches;
+  for (size_t i = 0; i < std::min(geometries.size(), counters->areas.size()); ++i)
+    counters->areas[i].global += is_own_ray(geometries[i], ray) ? 1 : 0;
+}
 
 void Accelerator::Parts::count_use(uint32_t area, const Ray& ray, AcceleratorCounters* counters) const {
   const std::optional<FrameTree>& tree = searches[area].in_ray_space();
@@ -71,10 +106,7 @@ Hit Accelerator::Parts::nearest(const Ray& ray, const Route& route, AcceleratorC
     if (counters != nullptr) ++counters->invalid_rays;
     return {};
   }
-  if (const auto hit = nearest_covered(route, ray)) {
-    if (counters != nullptr) ++counters->covered;
-    return *hit;
-  }
+  if (const auto hit = nearest_covered(route, ray, counters)) return *hit;
   Hit best;
   SearchOptions options;
   if (route.searches_some) {
@@ -83,12 +115,12 @@ Hit Accelerator::Parts::nearest(const Ray& ray, const Route& route, AcceleratorC
       count_use(stage->area, ray, counters);
       best = searches[stage->area].intersect(ray, best, walk.search_options(), local_counters(counters));
       if (!is_final(best, ray, stage->exit)) continue;
-      if (counters != nullptr && is_hit(best)) ++counters->local_hits;
+      count_local(stage->area, is_hit(best), counters);
       return best;
     }
     options = walk.search_options();
   }
-  if (counters != nullptr) ++counters->global_searches;
+  count_global(ray, counters);
   return global.intersect(ray, best, options, global_counters(counters));
 }
 
@@ -98,24 +130,23 @@ bool Accelerator::Parts::any(const Ray& ray, const Route& route, AcceleratorCoun
     if (counters != nullptr) ++counters->invalid_rays;
     return false;
   }
-  if (const auto hit = any_covered(route, ray)) {
-    if (counters != nullptr) ++counters->covered;
-    return *hit;
-  }
+  if (const auto hit = any_covered(route, ray, counters)) return *hit;
   SearchOptions options;
   if (route.searches_some) {
     AreaWalk walk(areas, ray, route.searches, counters);
     while (const auto stage = walk.next()) {
       count_use(stage->area, ray, counters);
       if (searches[stage->area].occluded(ray, walk.search_options(), local_counters(counters))) {
-        if (counters != nullptr) ++counters->local_hits;  // wherever it is: any hit answers
+        count_local(stage->area, true, counters);  // wherever the hit is: any answers
         return true;
       }
-      if (is_final({}, ray, stage->exit)) return false;
+      if (!is_final({}, ray, stage->exit)) continue;
+      count_local(stage->area, false, counters);
+      return false;
     }
     options = walk.search_options();
   }
-  if (counters != nullptr) ++counters->global_searches;
+  count_global(ray, counters);
   return global.occluded(ray, options, global_counters(counters));
 }
 
@@ -123,8 +154,9 @@ Hit Accelerator::intersect(const Ray& ray, AcceleratorCounters* counters) const 
   const Route& route = parts_->routes.nearest;
   if (counters == nullptr) {
     if (route.foreign.is_foreign(ray)) return parts_->global.intersect(ray, {}, {}, nullptr);
-    if (const auto hit = nearest_covered(route, ray)) return *hit;
+    if (const auto hit = nearest_covered(route, ray, nullptr)) return *hit;
   }
+  parts_->count_areas(counters);
   return parts_->nearest(ray, route, counters);
 }
 
@@ -132,59 +164,69 @@ bool Accelerator::occluded(const Ray& ray, AcceleratorCounters* counters) const 
   const Route& route = parts_->routes.any;
   if (counters == nullptr) {
     if (route.foreign.is_foreign(ray)) return parts_->global.occluded(ray, {}, nullptr);
-    if (const auto hit = any_covered(route, ray)) return *hit;
+    if (const auto hit = any_covered(route, ray, nullptr)) return *hit;
   }
+  parts_->count_areas(counters);
   return parts_->any(ray, route, counters);
 }
 
+namespace {
+
+/// Of a chunk, rays that are no area's go to the global tree together (many), the others one by one.
 template <class Answer, class One, class Many>
-void Accelerator::Parts::answer_array(const ForeignFilter& foreign, std::span<const Ray> rays,
-                                      std::span<Answer> answers, unsigned threads, const One& one,
-                                      const Many& many) const {
-  constexpr size_t kChunk = 1024, kProbe = 31;
+void answer_chunk(const ForeignFilter& foreign, std::span<const Ray> part, std::span<Answer> room, const One& one,
+                  const Many& many) {
+  constexpr size_t kProbe = 31;
   constexpr size_t kFew = kChunk / 16;  // so few others are not worth a selection
-  parallel_for(rays.size(), kChunk, threads, [&](size_t begin, size_t end) {
-    bool is_mixed = false;
-    for (size_t i = begin; i < end; i += kProbe) is_mixed |= !foreign.is_foreign(rays[i]);
-    if (!is_mixed) return many(rays.subspan(begin, end - begin), answers.subspan(begin, end - begin));
-    std::array<uint32_t, kChunk> numbers;
-    size_t foreigners = 0;
-    for (size_t i = begin; i < end; ++i) {
-      numbers[foreigners] = static_cast<uint32_t>(i - begin);
-      foreigners += foreign.is_foreign(rays[i]) ? 1 : 0;
+  bool is_mixed = false;
+  for (size_t i = 0; i < part.size(); i += kProbe) is_mixed |= !foreign.is_foreign(part[i]);
+  if (!is_mixed) return many(part, room);
+  std::array<uint32_t, kChunk> numbers;
+  size_t foreigners = 0;
+  for (size_t i = 0; i < part.size(); ++i) {
+    numbers[foreigners] = static_cast<uint32_t>(i);
+    foreigners += foreign.is_foreign(part[i]) ? 1 : 0;
+  }
+  if (part.size() - foreigners <= std::min(kFew, part.size() / 16)) return many(part, room);
+  std::vector<Ray> gathered;
+  gathered.reserve(foreigners);
+  size_t next = 0;
+  for (size_t i = 0; i < part.size(); ++i) {
+    if (next < foreigners && numbers[next] == i) {
+      gathered.push_back(part[i]);
+      ++next;
+    } else {
+      room[i] = one(part[i]);
     }
-    const std::span<const Ray> part = rays.subspan(begin, end - begin);
-    const std::span<Answer> room = answers.subspan(begin, end - begin);
-    if (part.size() - foreigners <= std::min(kFew, part.size() / 16)) return many(part, room);
-    std::vector<Ray> gathered;
-    gathered.reserve(foreigners);
-    size_t next = 0;
-    for (size_t i = 0; i < part.size(); ++i) {
-      if (next < foreigners && numbers[next] == i) {
-        gathered.push_back(part[i]);
-        ++next;
-      } else {
-        room[i] = one(part[i]);
-      }
-    }
-    std::vector<Answer> found(foreigners);
-    many(gathered, found);
-    for (size_t i = 0; i < foreigners; ++i) room[numbers[i]] = found[i];
-  });
+  }
+  std::vector<Answer> found(foreigners);
+  many(gathered, found);
+  for (size_t i = 0; i < foreigners; ++i) room[numbers[i]] = found[i];
 }
+
+}  // namespace
 
 void Accelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits, unsigned threads,
                             AcceleratorCounters* counters) const {
   check_sizes("Accelerator", rays.size(), hits.size());
   const std::optional<WideBvh>& global = parts_->global.wide();
   const Route& route = parts_->routes.nearest_of_many;
-  if (counters != nullptr || !global)
-    return for_chunks(rays.size(), threads, counters,
-                      [&](size_t i, AcceleratorCounters* count) { hits[i] = parts_->nearest(rays[i], route, count); });
-  if (route.foreign.is_trivial()) return global->intersect(rays, hits, threads);
-  parts_->answer_array(
-      route.foreign, rays, hits, threads, [&](const Ray& ray) { return parts_->nearest(ray, route, nullptr); },
-      [&](std::span<const Ray> some, std::span<Hit> found) { global->intersect(some, found); });
+  if (global && counters == nullptr && route.foreign.is_trivial()) return global->intersect(rays, hits, threads);
+  parts_->count_areas(counters);
+  for_chunks(rays.size(), threads, counters, [&](size_t begin, size_t end, AcceleratorCounters* count) {
+    const auto one_by_one = [&](std::span<const Ray> some, std::span<Hit> found, const Route& way) {
+      for (size_t i = 0; i < some.size(); ++i) found[i] = parts_->nearest(some[i], way, count);
+    };
+    const auto part = rays.subspan(begin, end - begin);
+    const auto room = hits.subspan(begin, end - begin);
+    if (!global) return one_by_one(part, room, route);
+    answer_chunk(
+        route.foreign, part, room, [&](const Ray& ray) { return parts_->nearest(ray, route, count); },
+        [&](std::span<const Ray> some, std::span<Hit> found) {
+          if (count != nullptr) return one_by_one(some, found, {});
+          global->intersect(some, found);
+        });
+  });
 }
 
 void Accelerator::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, unsigned threads,
@@ -192,15 +234,22 @@ void Accelerator::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, 
   check_sizes("Accelerator", rays.size(), flags.size());
   const std::optional<WideBvh>& global = parts_->global.wide();
   const Route& route = parts_->routes.any_of_many;
-  if (counters != nullptr || !global)
-    return for_chunks(rays.size(), threads, counters, [&](size_t i, AcceleratorCounters* count) {
-      flags[i] = parts_->any(rays[i], route, count) ? 1 : 0;
-    });
-  if (route.foreign.is_trivial()) return global->occluded(rays, flags, threads);
-  parts_->answer_array(
-      route.foreign, rays, flags, threads,
-      [&](const Ray& ray) { return static_cast<uint8_t>(parts_->any(ray, route, nullptr)); },
-      [&](std::span<const Ray> some, std::span<uint8_t> found) { global->occluded(some, found); });
+  if (global && counters == nullptr && route.foreign.is_trivial()) return global->occluded(rays, flags, threads);
+  parts_->count_areas(counters);
+  for_chunks(rays.size(), threads, counters, [&](size_t begin, size_t end, AcceleratorCounters* count) {
+    const auto one_by_one = [&](std::span<const Ray> some, std::span<uint8_t> found, const Route& way) {
+      for (size_t i = 0; i < some.size(); ++i) found[i] = parts_->any(some[i], way, count) ? 1 : 0;
+    };
+    const auto part = rays.subspan(begin, end - begin);
+    const auto room = flags.subspan(begin, end - begin);
+    if (!global) return one_by_one(part, room, route);
+    answer_chunk(
+        route.foreign, part, room, [&](const Ray& ray) { return static_cast<uint8_t>(parts_->any(ray, route, count)); },
+        [&](std::span<const Ray> some, std::span<uint8_t> found) {
+          if (count != nullptr) return one_by_one(some, found, {});
+          global->occluded(some, found);
+        });
+  });
 }
 
 }  // namespace raygrain

@@ -30,15 +30,13 @@ struct Accelerator::Parts {
   /// Adds what there is of an area's local tree.
   void describe_local(size_t area, AreaReport& report) const;
 
+  /// Makes room for the areas' counts; where there is none they are left out.
+  void count_areas(AcceleratorCounters* counters) const;
   void count_use(uint32_t area, const Ray& ray, AcceleratorCounters* counters) const;
+  void count_global(const Ray& ray, AcceleratorCounters* counters) const;
 
   Hit nearest(const Ray& ray, const Route& route, AcceleratorCounters* counters) const;
   bool any(const Ray& ray, const Route& route, AcceleratorCounters* counters) const;
-
-  /// Rays that are no area's go to the global tree together, the others one by one.
-  template <class Answer, class One, class Many>
-  void answer_array(const ForeignFilter& foreign, std::span<const Ray> rays, std::span<Answer> answers,
-                    unsigned threads, const One& one, const Many& many) const;
 };
 
 }  // namespace raygrain

@@ -50,6 +50,8 @@ void answer_rays(const StructureSpec& spec, const Accelerator& scene, const RayG
 /// The calls for rays that share something, in pieces of the batch's size.
 void answer_shared(const StructureSpec& spec, const Accelerator& scene, const RayGroup& group,
                    const RayAnswers& answers) {
+  AcceleratorCounters counters;
+  AcceleratorCounters* counted = spec.counted ? &counters : nullptr;
   std::vector<Vec3> parts;  // origins, or directions
   for (const Ray& ray : group.rays) parts.push_back(group.kind == RayGroupKind::kFrom ? ray.direction : ray.origin);
   for (size_t begin = 0; begin < parts.size(); begin += spec.batch) {
@@ -57,11 +59,11 @@ void answer_shared(const StructureSpec& spec, const Accelerator& scene, const Ra
     const std::span<const Vec3> some = std::span<const Vec3>(parts).subspan(begin, count);
     const auto hits = answers.nearest.subspan(begin, count);
     const auto flags = answers.any.subspan(begin, count);
-    if (group.kind == RayGroupKind::kFrom) scene.intersect_from(group.shared, some, hits, spec.threads);
-    if (group.kind == RayGroupKind::kTowards) scene.occluded_towards(some, group.shared, flags, spec.threads);
+    if (group.kind == RayGroupKind::kFrom) scene.intersect_from(group.shared, some, hits, spec.threads, counted);
+    if (group.kind == RayGroupKind::kTowards) scene.occluded_towards(some, group.shared, flags, spec.threads, counted);
     if (group.kind != RayGroupKind::kDirection) continue;
-    scene.intersect(some, group.shared, hits, spec.threads);
-    scene.occluded(some, group.shared, flags, spec.threads);
+    scene.intersect(some, group.shared, hits, spec.threads, counted);
+    scene.occluded(some, group.shared, flags, spec.threads, counted);
   }
   if (group.kind != RayGroupKind::kTowards) tell(answers, RayAnswers::kNearest);
   if (group.kind != RayGroupKind::kFrom) tell(answers, RayAnswers::kAny);

@@ -93,8 +93,8 @@ size_t ask(const Accelerator& scene, const Questions& q, uint64_t kind, unsigned
       scene.occluded(q.mixed, flags, threads);
       return wrong_flags(flags, q.mixed_hits);
     case 4:
-      scene.occluded(q.points, -kLight, flags, threads);
-      return wrong_flags(flags, q.sun_hits);
+      scene.occluded(q.points, -kLight, flags, threads, &counters);
+      return wrong_flags(flags, q.sun_hits) + (counters.rays != count);
     case 5:
       scene.intersect(q.points, -kLight, hits, threads);
       return wrong_hits(hits, q.sun_hits);
@@ -102,8 +102,8 @@ size_t ask(const Accelerator& scene, const Questions& q, uint64_t kind, unsigned
       scene.occluded_towards(q.points, q.lamp, flags, threads);
       return wrong_flags(flags, q.to_lamp_hits);
     case 7:
-      scene.intersect_from(q.lamp, q.directions, hits, threads);
-      return wrong_hits(hits, q.from_lamp_hits);
+      scene.intersect_from(q.lamp, q.directions, hits, threads, &counters);
+      return wrong_hits(hits, q.from_lamp_hits) + (counters.rays != count);
     default:
       return scene.explain(counters, 16).areas.size() != scene.local_trees().size();
   }
