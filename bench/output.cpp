@@ -9,6 +9,7 @@
 #include "raygrain/io.h"
 #include "raygrain/report.h"
 
+#include "structure_rows.h"
 #include "suite.h"
 
 namespace raygrain::bench {
@@ -292,6 +293,8 @@ void save_json(const Results& results, const std::string& path) {
   for (const BuildRow& row : results.builds) json["builds"].push_back(to_json(row));
   json["sizes"] = Json::array();
   for (const SizeRow& row : results.sizes) json["sizes"].push_back(to_json(row));
+  json["structures"] = Json::array();
+  for (const StructureRow& row : results.structures) json["structures"].push_back(to_json(row));
   json["geomean"] = geometric_means(results);
   write_file_atomically(path, [&](std::ostream& out) { out << json.dump(2) << '\n'; });
 }

@@ -15,7 +15,11 @@
 namespace raygrain::bench {
 
 std::vector<Suite> suites() {
-  return {{"general", run_general}, {"rays", run_rays}, {"sizes", run_sizes}, {"builds", run_builds}};
+  return {{"general", run_general},
+          {"rays", run_rays},
+          {"structures", run_structures},
+          {"sizes", run_sizes},
+          {"builds", run_builds}};
 }
 
 namespace {

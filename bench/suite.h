@@ -64,10 +64,24 @@ struct SizeRow {
   double global = 0;                        // in an array through the global tree alone
 };
 
+/// One structure alone on one ray set. 0 ns: not measured.
+struct StructureRow {
+  std::string scene;
+  size_t triangles = 0;
+  std::string rays, query, structure, api;  // api: single, batch or array
+  unsigned threads = 1;
+  double nanoseconds = 0, embree_single_nanoseconds = 0, embree_best_nanoseconds = 0;  // a ray
+  std::string embree_single_mode, embree_best_mode;
+  double build_seconds = 0, global_build_seconds = 0;  // of all that the set's areas have; of the global tree
+  size_t memory_bytes = 0, global_bytes = 0;
+  size_t differences = 0;  // answers that are not those of the global tree, bit by bit
+};
+
 struct Results {
   std::vector<Row> rows;
   std::vector<BuildRow> builds;
   std::vector<SizeRow> sizes;
+  std::vector<StructureRow> structures;
 };
 
 struct BenchScene {
@@ -87,6 +101,7 @@ void run_general(const Settings& settings, Results& results);
 void run_builds(const Settings& settings, Results& results);
 void run_rays(const Settings& settings, Results& results);
 void run_sizes(const Settings& settings, Results& results);
+void run_structures(const Settings& settings, Results& results);
 
 /// What load_bench_scene takes: the procedural scenes, in small or in both sizes, and the models of settings.scenes.
 std::vector<std::string> scene_sources(const Settings& settings);
