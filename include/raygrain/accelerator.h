@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "raygrain/area.h"
@@ -117,26 +118,53 @@ struct AcceleratorCounters {
   void add(const AcceleratorCounters& other);
 };
 
-/// What an area costs and saves. Times are measured, on rays of the area that explain() casts.
+/// How an area is asked: any hits or nearest hits, in one call for all rays or in one call for each.
+struct AreaQuestion {
+  bool any = true, together = true;
+
+  friend bool operator==(const AreaQuestion&, const AreaQuestion&) = default;
+};
+/// "any hits together", "closest hits together", "any hits one by one" or "closest hits one by one".
+std::string_view name(AreaQuestion question);
+
+/// Rays after which a build has paid for itself, in (0, infinity]: infinity where a ray saves nothing, and where a time
+/// is not a number.
+double break_even_rays(double build_seconds, double area_nanoseconds, double global_nanoseconds);
+
+/// How an area's rays fare, asked one way. Times are measured on one thread, the least of three.
+struct AreaTimes {
+  AreaQuestion question;
+  size_t rays = 0;              // timed
+  AreaUse use;                  // of them: who answered
+  double area_nanoseconds = 0;  // a ray through this accelerator; the same as the next where no structure answered any
+  double global_nanoseconds = 0;  // a ray through its global tree alone, asked likewise
+  double break_even_rays = 0;     // of such rays alone, for all that the area has
+};
+
+/// What an area costs and saves.
 struct AreaReport {
   std::string name;
-  size_t triangles = 0;                                 // of the local tree; some may be there more than once
-  double build_seconds = 0;                             // of everything that the area has
-  size_t memory_bytes = 0;                              // ... likewise
-  std::string structures;                               // e.g. "coverage, tree in ray space (shear_y), tree"
-  std::string routes;                                   // who answers which rays, and at what predicted cost
-  double area_nanoseconds = 0, global_nanoseconds = 0;  // a ray through this accelerator, and through its global tree
-  /// Rays after which the area's structures have paid for their build; infinity where they save nothing.
-  double break_even_rays = 0;
+  size_t triangles = 0;      // of the local tree; some may be there more than once
+  double build_seconds = 0;  // of everything that the area has
+  size_t memory_bytes = 0;   // ... likewise, without what areas share
+  std::string structures;    // e.g. "coverage, tree in ray space (shear_y), tree"
+  std::string routes;        // who answers which rays, and at what predicted cost
+  /// By question, in the order of their names above; none where the area has no structures, and without questions that
+  /// it has no rays for. Any hits go from surfaces in the region to the light or point; closest hits start where the
+  /// area's rays do: on the face (plane area), at the point (point area).
+  std::vector<AreaTimes> times;
+  AreaUse use;       // of the counted rays
+  double share = 0;  // in [0, 1]: of all counted rays, those that the area's structures answered
 };
 
 struct Explanation {
   std::vector<AreaReport> areas;
-  size_t global_bytes = 0;
+  size_t global_bytes = 0;       // of the global tree
+  size_t shared_bytes = 0;       // of what areas share: these, global_bytes and the areas' bytes are all that there is
   AcceleratorCounters counters;  // as handed in
 };
 
-/// Lines for people.
+/// Lines for people: of each area first what pays, soonest first.
 std::string to_text(const Explanation& explanation);
 
 /// Immutable, cheap to copy (shared inside), safe to use from many threads. Without areas every ray goes to the global
@@ -195,8 +223,9 @@ class Accelerator {
   /// One per area, or none.
   std::span<const Coverage> coverages() const;
 
-  /// Says which areas there are, what each costs and saves, and where rays went: pass the counters of your last batch.
-  /// Casts and traces `rays` rays (> 0) for each area, seeded; only times differ from call to call.
+  /// Says which areas there are, what each costs and saves, after how many rays its build has paid, and where rays
+  /// went: pass the counters of your last batch. Casts up to `rays` rays (> 0) for each area and question, seeded; only
+  /// times differ from call to call. Throws Error (kUsage): 0 rays, or counters of other areas.
   Explanation explain(const AcceleratorCounters& counters = {}, size_t rays = 4096) const;
 
   const TriangleMesh& mesh() const;
@@ -204,9 +233,10 @@ class Accelerator {
   const Bvh& global_tree() const;
   const TopLevel& top_level() const;
   Traversal traversal() const;
-  /// Everything but the mesh: binary trees, wide trees, top level and areas.
+  /// Everything but the mesh, each thing once: trees in all forms with their logs, corners of triangles, coverages, top
+  /// level, tables of areas.
   size_t memory_bytes() const;
-  /// The wide trees of these alone; 0 under Traversal::kBinary.
+  /// The wide trees of these alone, with the corners of those in ray space; 0 under Traversal::kBinary.
   size_t wide_memory_bytes() const;
 
  private:

@@ -71,6 +71,8 @@ class FrameTree {
   size_t node_count() const;
   size_t leaf_count() const;
   size_t memory_bytes() const;  // nodes and leaves, without the corners
+  /// As given, shared by all trees that were made of them; null for an empty tree without any.
+  const std::shared_ptr<const TriangleCorners>& corners() const;
 
  private:
   struct Data;

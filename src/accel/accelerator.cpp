@@ -170,21 +170,6 @@ Traversal Accelerator::traversal() const {
   return parts_->traversal;
 }
 
-size_t Accelerator::memory_bytes() const {
-  size_t bytes = raygrain::memory_bytes(global_tree()) + parts_->areas.top_level.memory_bytes();
-  bytes += parts_->areas.geometries.capacity() * sizeof(AreaGeometry);
-  bytes += parts_->areas.ranks.capacity() * sizeof(uint32_t);
-  for (const LocalTree& local : parts_->locals) bytes += sizeof(LocalTree) + raygrain::memory_bytes(*local.tree);
-  for (const Coverage& coverage : parts_->coverages) bytes += coverage.memory_bytes();
-  return bytes + wide_memory_bytes();
-}
-
-size_t Accelerator::wide_memory_bytes() const {
-  size_t bytes = parts_->global.wide_bytes();
-  for (const SearchTree& search : parts_->searches) bytes += search.wide_bytes();
-  return bytes;
-}
-
 void AcceleratorCounters::add(const AcceleratorCounters& other) {
   rays += other.rays;
   invalid_rays += other.invalid_rays;

@@ -11,6 +11,16 @@
 
 namespace raygrain {
 
+/// In bytes.
+struct AcceleratorMemory {
+  size_t global = 0;          // the global tree, in all forms
+  std::vector<size_t> areas;  // coverage and local tree in all forms, without what they share
+  size_t shared = 0;          // tables, top level, and the corners that all trees in ray space share
+  size_t fast_forms = 0;      // of all these: wide trees and trees in ray space with their corners
+
+  size_t total() const;
+};
+
 struct Accelerator::Parts {
   std::shared_ptr<const TriangleMesh> mesh;
   std::vector<LocalTree> locals;     // parallel to the areas, or none
@@ -27,7 +37,10 @@ struct Accelerator::Parts {
   /// Chooses the routes: by cost, or whatever there is.
   void choose_routes(bool by_cost, const SampleSource& samples, Isa isa);
 
-  /// Adds what there is of an area's local tree.
+  AcceleratorMemory memory() const;
+
+  /// What there is of an area, without times.
+  AreaReport describe(size_t area) const;
   void describe_local(size_t area, AreaReport& report) const;
 
   /// Makes room for the areas' counts; where there is none they are left out.

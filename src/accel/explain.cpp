@@ -1,59 +1,44 @@
-// An accelerator's account of itself, in words.
+// An accelerator's account of itself: measured, counted and summed.
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include "raygrain/accelerator.h"
 #include "raygrain/error.h"
-#include "raygrain/rays.h"
 
 #include "accel/accelerator_parts.h"
+#include "accel/area_questions.h"
+#include "base/text_line.h"
 #include "base/timer.h"
 
 namespace raygrain {
 
 namespace {
 
-template <class... Values>
-std::string line(const char* format, Values... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr AreaQuestion kQuestions[] = {{true, true}, {false, true}, {true, false}, {false, false}};
 
-double percent(uint64_t part, uint64_t whole) {
-  return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
-}
-
-std::string text_of(const AreaReport& area) {
-  std::string text = area.name + ": " + area.structures + "\n";
-  text += line("  %zu triangles, built in %.3f s, %.1f MB\n", area.triangles, area.build_seconds,
-               static_cast<double>(area.memory_bytes) * 1e-6);
-  for (size_t from = 0; from < area.routes.size();) {
-    const size_t end = area.routes.find('\n', from);
-    text += "  " + area.routes.substr(from, end - from) + "\n";
-    from = end + 1;
-  }
-  text += line("  %.0f ns a ray, %.0f ns through the global tree: ", area.area_nanoseconds, area.global_nanoseconds);
-  if (std::isinf(area.break_even_rays)) return text + "it saves nothing\n";
-  return text + line("pays for its build after %.0f rays\n", area.break_even_rays);
-}
-
-/// The least of three runs over the rays.
-template <class Trace>
-double nanoseconds_per_ray(std::span<const Ray> rays, const Trace& trace) {
-  double least = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < 3; ++round) {
+/// Nanoseconds a ray of two ways of asking, which take turns: the least of three.
+template <class Here, class There>
+std::pair<double, double> least_nanoseconds(size_t rays, const Here& here, const There& there) {
+  std::pair least{kInfinity, kInfinity};
+  const auto timed = [rays](double& best, const auto& ask) {
     const Timer timer;
-    uint32_t sum = 0;  // so that no search is left out
-    for (const Ray& ray : rays) sum += trace(ray).triangle;
-    const double seconds = timer.seconds() + (sum == 0xfffffffeu ? 1e-12 : 0);
-    least = std::min(least, seconds * 1e9 / static_cast<double>(rays.size()));
+    ask();
+    best = std::min(best, timer.seconds() * 1e9 / static_cast<double>(rays));
+  };
+  for (int round = 0; round < 3; ++round) {
+    timed(least.first, here);
+    timed(least.second, there);
   }
   return least;
 }
 
 std::string cost_text(double nanoseconds) {
-  return std::isinf(nanoseconds) ? "none" : line("%.0f", nanoseconds);
+  return std::isinf(nanoseconds) ? "none" : text_line("%.0f", nanoseconds);
 }
 
 std::string route_text(const char* kind, const Route& route, std::span<const AreaCosts> costs,
@@ -66,9 +51,9 @@ std::string route_text(const char* kind, const Route& route, std::span<const Are
                      ", near it " + (searches ? "its tree" : "global tree");
   if (costs.empty()) return text;
   const WayCosts& c = costs[area].*which;
-  return text + line(" (predicted ns along it: coverage %s, tree %s, global %s; near it: tree %s, global %s)",
-                     cost_text(c.coverage).c_str(), cost_text(c.local).c_str(), cost_text(c.global * many).c_str(),
-                     cost_text(c.off_local).c_str(), cost_text(c.off_global * many).c_str());
+  return text + text_line(" (predicted ns along it: coverage %s, tree %s, global %s; near it: tree %s, global %s)",
+                          cost_text(c.coverage).c_str(), cost_text(c.local).c_str(), cost_text(c.global * many).c_str(),
+                          cost_text(c.off_local).c_str(), cost_text(c.off_global * many).c_str());
 }
 
 /// A line for each kind of question.
@@ -79,6 +64,55 @@ std::string routes_text(const Routes& routes, std::span<const AreaCosts> costs, 
          route_text("closest hit in arrays", routes.nearest_of_many, costs, &AreaCosts::nearest, many, area) + "\n";
 }
 
+/// An accelerator and its global tree alone, asked about one area.
+class Interview {
+ public:
+  /// `global`: the scene without areas.
+  Interview(const Accelerator& scene, const Accelerator& global, const AreaGeometry& geometry, size_t area)
+      : scene_(scene), global_(global), geometry_(geometry), area_(area) {}
+
+  std::vector<AreaTimes> ask_all(size_t rays, double build_seconds) const {
+    std::vector<AreaTimes> times;
+    const AreaQuestions any = questions_of(geometry_, scene_.mesh(), true, rays, area_);
+    const AreaQuestions closest = questions_of(geometry_, scene_.mesh(), false, rays, area_);
+    for (const AreaQuestion question : kQuestions) {
+      const AreaQuestions& asked = question.any ? any : closest;
+      if (asked.size() > 0) times.push_back(ask(asked, question.together, build_seconds));
+    }
+    return times;
+  }
+
+ private:
+  AreaTimes ask(const AreaQuestions& questions, bool together, double build_seconds) const {
+    AreaTimes times{{questions.any, together}, questions.size(), {}, 0, 0, kInfinity};
+    AreaAnswers answers(questions.size());
+    AcceleratorCounters counters;
+    answer(scene_, questions, together, answers, &counters);
+    times.use = counters.areas[area_];
+    const auto here = [&] {
+      if (times.use.answered() > 0) answer(scene_, questions, together, answers, nullptr);
+    };
+    const auto there = [&] { answer(global_, questions, together, answers, nullptr); };
+    std::tie(times.area_nanoseconds, times.global_nanoseconds) = least_nanoseconds(questions.size(), here, there);
+    if (times.use.answered() == 0) times.area_nanoseconds = times.global_nanoseconds;
+    times.break_even_rays = raygrain::break_even_rays(build_seconds, times.area_nanoseconds, times.global_nanoseconds);
+    return times;
+  }
+
+  void answer(const Accelerator& scene, const AreaQuestions& questions, bool together, AreaAnswers& answers,
+              AcceleratorCounters* counters) const {
+    if (together)
+      ask_together(scene, questions, geometry_.is_plane(), answers, counters);
+    else
+      ask_one_by_one(scene, questions, answers, counters);
+  }
+
+  const Accelerator& scene_;
+  const Accelerator& global_;
+  const AreaGeometry& geometry_;
+  const size_t area_;
+};
+
 }  // namespace
 
 void Accelerator::Parts::describe_local(size_t area, AreaReport& report) const {
@@ -86,58 +120,54 @@ void Accelerator::Parts::describe_local(size_t area, AreaReport& report) const {
   const SearchTree& search = searches[area];
   report.triangles = local.tree->prims.size();
   report.build_seconds += local.build_seconds;
-  report.memory_bytes += raygrain::memory_bytes(*local.tree) + search.wide_bytes();
   if (!report.structures.empty()) report.structures += ", ";
   if (const auto& tree = search.in_ray_space())
     report.structures += std::string("tree in ray space (") + raygrain::name(tree->frame().kind) + "), ";
   report.structures += "tree";
 }
 
+AreaReport Accelerator::Parts::describe(size_t area) const {
+  AreaReport report;
+  report.name = geometries[area].area().name;
+  if (area < coverages.size() && coverages[area].is_useful()) {
+    report.structures = "coverage";
+    report.build_seconds = coverages[area].build_seconds();
+  }
+  if (area < locals.size()) describe_local(area, report);
+  report.routes = routes_text(routes, costs, many_share, area);
+  return report;
+}
+
 Explanation Accelerator::explain(const AcceleratorCounters& counters, size_t rays) const {
+  const size_t count = parts_->geometries.size();
   if (rays == 0) throw Error(ErrorCode::kUsage, "explain", "0 rays", "Use at least 1");
+  if (!counters.areas.empty() && counters.areas.size() != count)
+    throw Error(
+        ErrorCode::kUsage, "explain",
+        "counters of " + std::to_string(counters.areas.size()) + " areas, but there are " + std::to_string(count),
+        "Pass counters of this accelerator");
+  const AcceleratorMemory memory = parts_->memory();
+  const Accelerator global = with_local_trees({});
   Explanation explanation;
   explanation.counters = counters;
-  explanation.global_bytes = raygrain::memory_bytes(global_tree()) + parts_->global.wide_bytes();
-  for (size_t i = 0; i < parts_->geometries.size(); ++i) {
-    const InfluenceArea& area = parts_->geometries[i].area();
-    AreaReport report;
-    report.name = area.name;
-    if (i < parts_->coverages.size() && parts_->coverages[i].is_useful()) {
-      report.structures = "coverage";
-      report.build_seconds = parts_->coverages[i].build_seconds();
-      report.memory_bytes = parts_->coverages[i].memory_bytes();
-    }
-    if (i < parts_->locals.size()) parts_->describe_local(i, report);
-    report.routes = routes_text(parts_->routes, parts_->costs, parts_->many_share, i);
-    const std::vector<Ray> sample = cast_rays(AreaRays{area, RayStart::kRandomDepth}, rays, i + 1);
-    const double here = nanoseconds_per_ray(sample, [&](const Ray& ray) { return intersect(ray); });
-    const double global =
-        nanoseconds_per_ray(sample, [&](const Ray& ray) { return parts_->global.intersect(ray, {}, {}, nullptr); });
-    report.area_nanoseconds = here;
-    report.global_nanoseconds = global;
-    report.break_even_rays =
-        global > here ? report.build_seconds * 1e9 / (global - here) : std::numeric_limits<double>::infinity();
+  explanation.global_bytes = memory.global;
+  explanation.shared_bytes = memory.shared;
+  for (size_t i = 0; i < count; ++i) {
+    AreaReport report = parts_->describe(i);
+    report.memory_bytes = memory.areas[i];
+    if (!report.structures.empty())
+      report.times = Interview(*this, global, parts_->geometries[i], i).ask_all(rays, report.build_seconds);
+    if (!counters.areas.empty()) report.use = counters.areas[i];
+    if (counters.rays > 0)
+      report.share = static_cast<double>(report.use.answered()) / static_cast<double>(counters.rays);
     explanation.areas.push_back(std::move(report));
   }
   return explanation;
 }
 
-std::string to_text(const Explanation& explanation) {
-  std::string text;
-  for (const AreaReport& area : explanation.areas) text += text_of(area);
-  text += line("global tree: %.1f MB\n", static_cast<double>(explanation.global_bytes) * 1e-6);
-  const AcceleratorCounters& c = explanation.counters;
-  if (c.rays == 0) return text;
-  text += line(
-      "of %llu rays: %.1f %% answered by coverage, %.1f %% by local trees, %.1f %% needed the global tree, %.1f %% "
-      "invalid\n",
-      static_cast<unsigned long long>(c.rays), percent(c.covered, c.rays),
-      percent(c.rays - c.covered - c.global_searches - c.invalid_rays, c.rays), percent(c.global_searches, c.rays),
-      percent(c.invalid_rays, c.rays));
-  text += line("local searches in ray space: %llu as columns, %llu as cones, of %llu\n",
-               static_cast<unsigned long long>(c.columns), static_cast<unsigned long long>(c.cones),
-               static_cast<unsigned long long>(c.local_searches));
-  return text;
+double break_even_rays(double build_seconds, double area_nanoseconds, double global_nanoseconds) {
+  const double saved = global_nanoseconds - area_nanoseconds;
+  return saved > 0 && build_seconds >= 0 ? build_seconds * 1e9 / saved : kInfinity;
 }
 
 }  // namespace raygrain

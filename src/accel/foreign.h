@@ -27,6 +27,8 @@ class ForeignFilter {
   /// Every ray is.
   bool is_trivial() const { return axes_.empty() && eyes_.empty(); }
 
+  size_t memory_bytes() const { return axes_.capacity() * sizeof(Axis) + eyes_.capacity() * sizeof(Eye); }
+
   /// The ray concerns no area. False for invalid rays, unless all are foreign.
   bool is_foreign(const Ray& ray) const {
     const float size = dot(ray.direction, ray.direction);

@@ -122,5 +122,8 @@ size_t FrameTree::leaf_count() const {
 size_t FrameTree::memory_bytes() const {
   return data_->tree.memory.size();
 }
+const std::shared_ptr<const TriangleCorners>& FrameTree::corners() const {
+  return data_->tree.corners;
+}
 
 }  // namespace raygrain

@@ -154,9 +154,7 @@ TEST(Classification, ExplainsItself) {
   EXPECT_EQ(area.triangles, mesh.triangle_count());
   EXPECT_GT(area.build_seconds, 0);
   EXPECT_GT(area.memory_bytes, 0u);
-  EXPECT_GT(area.area_nanoseconds, 0);
-  EXPECT_GT(area.global_nanoseconds, 0);
-  EXPECT_TRUE(area.break_even_rays > 0);
+  EXPECT_EQ(area.times.size(), 4u);
   EXPECT_NE(area.structures.find("tree in ray space (shear_"), std::string::npos) << area.structures;
   const std::string text = to_text(explanation);
   EXPECT_NE(text.find("sun: coverage, tree in ray space"), std::string::npos) << text;
