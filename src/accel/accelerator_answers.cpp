@@ -41,31 +41,26 @@ void for_chunks(size_t rays, unsigned threads, AcceleratorCounters* counters, co
   });
 }
 
-/// `asked` is the place of a coverage among those that the route asks.
-void count_covered(const Route& route, size_t asked, AcceleratorCounters* counters) {
+void count_covered(uint32_t area, AcceleratorCounters* counters) {
   if (counters == nullptr) return;
   ++counters->covered;
-  size_t area = 0;
-  for (size_t before = asked; route.covers[area] == 0 || before-- > 0;) ++area;
   if (area < counters->areas.size()) ++counters->areas[area].covered;
 }
 
 /// Rays along an area that its coverage answers, whatever region they are in.
 std::optional<Hit> nearest_covered(const Route& route, const Ray& ray, AcceleratorCounters* counters) {
-  for (size_t i = 0; i < route.asked.size(); ++i)
-    if (const auto hit = route.asked[i].intersect(ray)) {
-      count_covered(route, i, counters);
-      return hit;
-    }
-  return {};
+  return route.asked.first_answer(ray, [&](const Coverage& coverage, uint32_t area) {
+    const std::optional<Hit> hit = coverage.intersect(ray);
+    if (hit) count_covered(area, counters);
+    return hit;
+  });
 }
 std::optional<bool> any_covered(const Route& route, const Ray& ray, AcceleratorCounters* counters) {
-  for (size_t i = 0; i < route.asked.size(); ++i)
-    if (const auto hit = route.asked[i].occluded(ray)) {
-      count_covered(route, i, counters);
-      return hit;
-    }
-  return {};
+  return route.asked.first_answer(ray, [&](const Coverage& coverage, uint32_t area) {
+    const std::optional<bool> hit = coverage.occluded(ray);
+    if (hit) count_covered(area, counters);
+    return hit;
+  });
 }
 
 void count_local(uint32_t area, bool is_local_hit, AcceleratorCounters* counters) {

@@ -17,6 +17,15 @@ enum class Reach : uint8_t {
   kTolerance,  // those within its tolerance
 };
 
+/// Does the ray's line pass the point by, at a sine of more than the root of `greatest_square`? False for invalid rays.
+inline bool passes_by(const Ray& ray, Vec3 point, float greatest_square) {
+  const Vec3 away = ray.origin - point, beside = cross(away, ray.direction);
+  return dot(beside, beside) > greatest_square * dot(ray.direction, ray.direction) * dot(away, away);
+}
+
+/// Coverage takes rays that leave its columns by a slope of 2^-22; floats see that as a sine of less than 2^-18.
+inline constexpr float kAxisSquare = 0x1.0001p-36f;
+
 /// Tells by the line alone. Whoever passes may still be foreign; nobody's answer depends on it.
 class ForeignFilter {
  public:
@@ -36,10 +45,8 @@ class ForeignFilter {
       const Vec3 beside = cross(axis.direction, ray.direction);
       if (!(dot(beside, beside) > axis.greatest_square * size)) return false;
     }
-    for (const Eye& eye : eyes_) {
-      const Vec3 away = ray.origin - eye.place, beside = cross(away, ray.direction);
-      if (!(dot(beside, beside) > eye.greatest_square * size * dot(away, away))) return false;
-    }
+    for (const Eye& eye : eyes_)
+      if (!passes_by(ray, eye.place, eye.greatest_square)) return false;
     return true;
   }
 

@@ -23,16 +23,16 @@ Choice cheapest(const WayCosts& costs, bool can_cover, bool can_search, double m
 }
 
 Route make_route(std::span<const AreaGeometry> areas, std::span<const Coverage> coverages,
-                 std::span<const Choice> choices) {
+                 std::span<const Choice> choices, EyeEnd end) {
   Route route;
   std::vector<Reach> reaches;
   for (const Choice& choice : choices) {
-    if (choice.covers) route.asked.push_back(coverages[route.covers.size()]);
     route.covers.push_back(choice.covers ? 1 : 0);
     route.searches.push_back(choice.searches ? 1 : 0);
     route.searches_some |= choice.searches;
     reaches.push_back(choice.searches ? Reach::kTolerance : choice.covers ? Reach::kAxis : Reach::kNone);
   }
+  route.asked = AskedCoverages(coverages, areas, route.covers, end);
   route.foreign = ForeignFilter(areas, reaches);
   return route;
 }
@@ -42,13 +42,14 @@ Route make_route(std::span<const AreaGeometry> areas, std::span<const Coverage> 
 Routes choose_routes(std::span<const AreaGeometry> areas, std::span<const Coverage> coverages, bool has_locals,
                      std::span<const AreaCosts> costs, double many) {
   const auto route = [&](WayCosts AreaCosts::*kind, double share) {
+    const EyeEnd end = kind == &AreaCosts::any ? EyeEnd::kTowards : EyeEnd::kFrom;
     std::vector<Choice> choices;
     for (size_t i = 0; i < areas.size(); ++i) {
       const bool can_cover = i < coverages.size() && coverages[i].is_useful();
       choices.push_back(costs.empty() ? Choice{can_cover, has_locals}
                                       : cheapest(costs[i].*kind, can_cover, has_locals, share));
     }
-    return make_route(areas, coverages, choices);
+    return make_route(areas, coverages, choices, end);
   };
   return {route(&AreaCosts::any, 1), route(&AreaCosts::nearest, 1), route(&AreaCosts::any, many),
           route(&AreaCosts::nearest, many)};

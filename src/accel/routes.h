@@ -9,13 +9,14 @@
 
 #include "raygrain/coverage.h"
 
+#include "accel/asked_coverages.h"
 #include "accel/foreign.h"
 
 namespace raygrain {
 
 /// Of one kind of question.
 struct Route {
-  std::vector<Coverage> asked;    // the coverages that are asked, in the order of areas; nothing of invalid rays
+  AskedCoverages asked;           // nothing of invalid rays
   std::vector<uint8_t> covers;    // by area: its coverage is among them
   std::vector<uint8_t> searches;  // by area: its local tree is searched
   bool searches_some = false;
