@@ -51,6 +51,12 @@ AskedCoverages::AskedCoverages(std::span<const Coverage> coverages, std::span<co
   }
 }
 
+size_t AskedCoverages::memory_bytes() const {
+  size_t bytes = alone_.capacity() * sizeof(Asked) + lamps_.capacity() * sizeof(Lamp);
+  for (const Lamp& lamp : lamps_) bytes += lamp.frusta.capacity() * sizeof(Asked);
+  return bytes;
+}
+
 bool AskedCoverages::is_elsewhere(const Lamp& lamp, const Ray& ray) {
   return passes_by(ray, lamp.eye, kAxisSquare);
 }

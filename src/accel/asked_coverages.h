@@ -44,6 +44,9 @@ class AskedCoverages {
     return decltype(ask(alone_[0].coverage, 0u)){};
   }
 
+  /// Of the lists; coverages are counted where they are kept.
+  size_t memory_bytes() const;
+
   /// Of a cube around the origin, the face that the direction points at: 2 * axis, + 1 where that is negative.
   static size_t face_of(Vec3 direction) {
     // As integers, and without jumps: nobody can guess these comparisons.
