@@ -28,6 +28,7 @@ constexpr Command kCommands[] = {
     {"build", "Build one tree and write it as a tree file or as JSON", declare_build},
     {"analyze", "Print all metrics of one tree", declare_analyze},
     {"trace", "Find the nearest hits of rays from a file", declare_trace},
+    {"explain", "Say what influence areas cost, what they save, and after how many rays they pay", declare_explain},
     {"refit", "Fit a tree file to vertices that moved", declare_refit},
     {"report", "Draw the results of studies as a page of charts", declare_report},
     {"view", "Show scene, areas, trees, rays and costs in a browser", declare_view},

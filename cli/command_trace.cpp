@@ -12,11 +12,12 @@
 #include "raygrain/io.h"
 #include "raygrain/report.h"
 
-#include "base/nearest_name.h"
 #include "base/parallel.h"
 #include "base/timer.h"
 #include "cli/areas.h"
 #include "cli/commands.h"
+#include "cli/environment_json.h"
+#include "cli/given_rays.h"
 #include "cli/memory.h"
 #include "cli/open_scene.h"
 #include "cli/tree_file.h"
@@ -33,7 +34,8 @@ constexpr const char* kDefaultGlobal = "SAH+ALL@binned";
 struct Options {
   CommonOptions common;
   AreaOptions areas;
-  std::string scene, rays, set, output;
+  RayOptions rays;
+  std::string scene, output;
   std::string local = "PAH+ALL@binned", global = kDefaultGlobal;
   std::string quality, tree, traversal = "wide";
   bool verify = false, reinsert = false;
@@ -64,20 +66,6 @@ AcceleratorOptions accelerator_options(const Options& options) {
   result.threads = options.common.thread_count();
   result.samples = [](const InfluenceArea* area) { return area ? sample_rays(*area, 1) : std::vector<Ray>{}; };
   return result;
-}
-
-std::vector<Ray> rays_of_set(const Scene& scene, const std::string& name) {
-  std::vector<std::string_view> names;
-  for (const RaySet& set : scene.ray_sets) {
-    if (set.name == name) {
-      require_memory("casting the rays '" + name + "'", static_cast<double>(ray_count(set) * sizeof(Ray)),
-                     "Ask for fewer rays");
-      return make_rays(set, scene.mesh);
-    }
-    names.push_back(set.name);
-  }
-  fail_usage("--set", "the scene has no rays '" + name + "'",
-             names.empty() ? "It has no ray sets: use --rays FILE.csv" : suggestion(name, names));
 }
 
 using Tell = std::function<void(double done)>;
@@ -122,15 +110,10 @@ Json work(const TraceCounters& c) {
 }
 
 std::string trace_json(const Options& options, const Scene& scene, const Traced& traced) {
-  const Environment environment = current_environment(options.common.thread_count());
   const AcceleratorCounters& c = traced.counters;
   Json report{{"scene", scene.name},
               {"triangles", scene.mesh.triangle_count()},
-              {"environment",
-               {{"commit", environment.commit},
-                {"compiler", environment.compiler},
-                {"cpu", environment.cpu},
-                {"threads", environment.threads}}},
+              {"environment", environment_json(options.common.thread_count())},
               {"rays", traced.hits.size()},
               {"hits", traced.hit_count},
               {"trace_seconds", traced.seconds},
@@ -176,9 +159,8 @@ void check_options(const Options& options) {
   if (!options.tree.empty() && (!options.quality.empty() || options.reinsert || options.global != kDefaultGlobal))
     fail_usage("--tree", "cannot be combined with --global, --quality or --reinsert",
                "They say how a new tree is built");
-  if (options.rays.empty() == options.set.empty())
-    fail_usage("--rays", options.rays.empty() ? "no rays are given" : "cannot be combined with --set",
-               "Give --rays FILE.csv (columns ox,oy,oz,dx,dy,dz[,tmin,tmax]) or --set NAME of a scene.json");
+  check_ray_options(options.rays);
+  if (!options.rays.is_given()) fail_usage("--rays", "no rays are given", kRaysHint);
 }
 
 /// With the global tree of a file, where one is given.
@@ -224,7 +206,7 @@ int trace(const Options& options) {
   Progress progress(!options.common.quiet);
   const Scene scene = open_scene(options.scene, progress);
   const std::vector<InfluenceArea> areas = choose_areas(options.areas, scene, output);
-  const std::vector<Ray> rays = options.rays.empty() ? rays_of_set(scene, options.set) : load_rays(options.rays);
+  const std::vector<Ray> rays = given_rays(options.rays, scene);
 
   Traced traced = trace_and_verify(options, scene, areas, rays, progress);
   save_hits(traced.hits, options.output);
@@ -242,8 +224,7 @@ int trace(const Options& options) {
 Action declare_trace(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   arguments.operand("SCENE", options->scene, kSceneHelp);
-  arguments.file("--rays", "FILE.csv", options->rays, "Rays: columns ox,oy,oz,dx,dy,dz and optional tmin,tmax");
-  arguments.text("--set", "NAME", options->set, "Rays of this ray set of a scene.json");
+  add_ray_options(arguments, options->rays);
   arguments.output("-o,--output", "HITS.csv", options->output, "Hits: columns t,u,v,triangle; a miss is inf,0,0,-1");
   arguments.require("--output");
   add_area_options(arguments, options->areas);

@@ -9,6 +9,7 @@ Action declare_compare(Arguments& arguments);
 Action declare_build(Arguments& arguments);
 Action declare_analyze(Arguments& arguments);
 Action declare_trace(Arguments& arguments);
+Action declare_explain(Arguments& arguments);
 Action declare_refit(Arguments& arguments);
 Action declare_generate(Arguments& arguments);
 Action declare_convert(Arguments& arguments);

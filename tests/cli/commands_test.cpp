@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -23,6 +24,7 @@ TEST(Help, EveryCommandExplainsItself) {
                                                        {"compare"},
                                                        {"build"},
                                                        {"trace"},
+                                                       {"explain"},
                                                        {"analyze"},
                                                        {"refit"},
                                                        {"recipes"},
@@ -176,6 +178,57 @@ TEST(Trace, TakesTheRaysOfAScene) {
       run_program({"trace", "procedural:random1000", "--set", "sun", "-o", folder.file("hits.csv"), "--verify"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_GT(count_lines(read_file(folder.file("hits.csv"))), 1000u);
+}
+
+TEST(Explain, SaysOfEachQuestionWhatItCostsAndSaves) {
+  const RunResult result = run_program({"explain", kSmallScene, "--samples", "200", "--space", "none", "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const Json json = Json::parse(result.output);
+  ASSERT_EQ(json.at("areas").size(), 1u);
+  const Json& area = json.at("areas").at(0);
+  EXPECT_EQ(area.at("name"), "sun");
+  EXPECT_EQ(area.at("structures"), "coverage");
+  const std::vector<std::string> names{"any hits together", "closest hits together", "any hits one by one",
+                                       "closest hits one by one"};
+  ASSERT_EQ(area.at("questions").size(), names.size());
+  for (size_t i = 0; i < names.size(); ++i) {
+    const Json& question = area.at("questions").at(i);
+    EXPECT_EQ(question.at("question"), names[i]);
+    EXPECT_EQ(question.at("rays"), 200);
+    const double here = question.at("area_nanoseconds"), global = question.at("global_nanoseconds");
+    EXPECT_GT(global, 0);
+    EXPECT_EQ(question.at("break_even_rays").is_null(), here >= global);
+  }
+  EXPECT_EQ(json.at("rays"), 0);
+}
+
+TEST(Explain, CountsTheRaysThatAreGiven) {
+  const TemporaryFolder folder;
+  write_file(folder.file("quad.obj"), "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nf 1 2 3\nf 1 3 4\n");
+  std::string rays = "ox,oy,oz,dx,dy,dz,tmin,tmax\n";
+  for (int i = 0; i < 100; ++i)  // sixty to the sun, thirty nobody's, ten of no direction
+    rays += fmt::format("{},1,-2,{}\n", i % 7, i < 60 ? "0,0,-1,0,inf" : i < 90 ? "1,0,0,0,inf" : "0,0,0,0,inf");
+  write_file(folder.file("rays.csv"), rays);
+  std::vector<std::string> arguments{"explain", folder.file("quad.obj"),
+                                     "--sun",   "0,0,1",
+                                     "--rays",  folder.file("rays.csv"),
+                                     "--any",   "--samples",
+                                     "50",      "--space",
+                                     "none"};
+  const RunResult text = run_program(arguments);
+  ASSERT_EQ(text.exit_code, 0) << text.errors;
+  EXPECT_NE(text.output.find("pays after"), std::string::npos) << text.output;
+  EXPECT_NE(text.output.find("of 100 rays: "), std::string::npos) << text.output;
+  arguments.insert(arguments.end(), {"--json", "-"});
+  const Json json = Json::parse(run_program(arguments).output);
+  const Json& area = json.at("areas").at(0);
+  EXPECT_EQ(json.at("rays"), 100);
+  EXPECT_EQ(json.at("invalid_rays"), 10);
+  const uint64_t covered = area.at("answered").at("covered"), global = area.at("answered").at("global");
+  EXPECT_EQ(covered + global, 60u);
+  EXPECT_EQ(json.at("covered"), covered);
+  EXPECT_EQ(json.at("global_searches"), 90 - covered);
+  EXPECT_EQ(area.at("share"), static_cast<double>(covered) / 100);
 }
 
 TEST(SceneCommands, GenerateConvertAndDescribe) {

@@ -26,6 +26,7 @@ std::vector<Row> writing_commands() {
       {"tree JSON", {"build", kSmallScene, "--recipe", "SAH+ALL@binned", "--whole", "-o", "OUT/tree.json"}},
       {"analysis", {"analyze", kSmallScene, "--recipe", "SAH+ALL@binned", "--whole", "--nodes", "OUT/nodes.csv"}},
       {"hits", {"trace", kSmallScene, "--set", "sun", "-o", "OUT/hits.csv", "--json", "OUT/trace.json"}},
+      {"explanation", {"explain", kSmallScene, "--samples", "10", "--json", "OUT/explanation.json"}},
       {"refitted tree", {"refit", "IN/mesh.ply", "--tree", "IN/tree.rgt", "-o", "OUT/tree.rgt"}},
       {"mesh", {"scene", "convert", "IN/mesh.ply", "-o", "OUT/mesh.obj"}},
       {"scene", {"scene", "generate", kSmallScene, "-o", "OUT/scene.json"}},

@@ -76,6 +76,7 @@ TEST_F(SeparateFiles, AreDemandedOfEveryCommand) {
            {{"trace", obj, "--rays", path("rays.csv"), "-o", obj}, "SCENE"},
            {{"trace", obj, "--rays", path("rays.csv"), "--tree", path("tree.rgt"), "-o", path("tree.rgt")}, "--tree"},
            {{"trace", obj, "--rays", path("rays.csv"), "-o", path("new"), "--json", path("new")}, "--json"},
+           {{"explain", obj, "--rays", path("rays.csv"), "--json", path("rays.csv")}, "--json"},
            {{"scene", "convert", obj, "-o", obj}, "SCENE"},
            {{"scene", "convert", link, "-o", path("other/quad.obj")}, "SCENE"},
            {{"scene", "convert", path("scene.json"), "-o", path("scene.json")}, "SCENE"},
