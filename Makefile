@@ -10,7 +10,7 @@ CORE_TESTS := test_base test_geometry test_build test_heuristic test_trace test_
 
 BENCH ?= --quick
 
-.PHONY: help build demo study bench bench-dependencies report-page report-page-test viewer viewer-test page-dependencies gallery \
+.PHONY: help build demo study bench bench-dependencies rays-figures report-page report-page-test viewer viewer-test page-dependencies gallery \
         test test-full asan-test release-test pages-for-tests pages-if-possible tsan-test clang-test neon-test fuzz models coverage format check-format tidy \
         dependencies full-dependencies install clean
 
@@ -35,6 +35,12 @@ bench: bench-dependencies ## against Embree on the same rays; BENCH="--json FILE
 	@$(call PRESET,release)
 	@cmake --build $(RELEASE) -j $(JOBS) --target raygrain_bench
 	@$(RELEASE)/bin/raygrain-bench $(BENCH)
+
+THREADS ?= 1 2
+
+rays-figures: ## rays with structure against Embree, on a quiet machine: half an hour; rewrites the tables in docs/performance-rays.md and README.md
+	@$(MAKE) --no-print-directory bench BENCH="--suite rays --threads $(THREADS) --json build/rays.json"
+	@scripts/rays_tables.py build/rays.json --into docs/performance-rays.md README.md
 
 demo: build      ## build, then compare the paper's heuristics on a built-in city under a low sun
 	@scripts/demo.sh $(RELEASE)/bin/raygrain build/demo

@@ -10,7 +10,6 @@
 namespace raygrain::bench {
 namespace {
 
-constexpr size_t kRaysToRank = 50000;
 constexpr size_t kMostQuestions = 10;
 constexpr int kRounds = 7, kRoundsOnManyThreads = 15;  // more, for other programs disturb them more
 
@@ -58,6 +57,7 @@ class Measurement {
 
   /// In the given order of the apis, of each the two fastest.
   std::vector<Entrant> best_of_each_api(const std::vector<Entrant>& entrants) const {
+    const BenchRays sample = spread_sample(set_, kRaysToRank);
     std::vector<std::string> apis;
     for (const Entrant& entrant : entrants)
       if (std::ranges::find(apis, entrant.api) == apis.end()) apis.push_back(entrant.api);
@@ -65,7 +65,7 @@ class Measurement {
     for (const std::string& api : apis) {
       std::vector<std::pair<double, const Entrant*>> ranking;
       for (const Entrant& entrant : entrants)
-        if (entrant.api == api) ranking.emplace_back(try_out(entrant.trace, set_, kRaysToRank, threads_), &entrant);
+        if (entrant.api == api) ranking.emplace_back(try_out(entrant.trace, sample, threads_), &entrant);
       std::ranges::stable_sort(ranking, {}, &std::pair<double, const Entrant*>::first);
       for (size_t i = 0; i < std::min<size_t>(2, ranking.size()); ++i) best.push_back(*ranking[i].second);
     }
@@ -82,21 +82,19 @@ class Measurement {
 
   double mrays(double seconds) const { return static_cast<double>(set_.rays.size()) / seconds * 1e-6; }
 
-  void add_peer_figures(const std::vector<PeerMode>& modes, std::span<const double> seconds, size_t first,
-                        Row& row) const {
-    const Answers* best_single = nullptr;
+  void add_peer_figures(const std::vector<PeerMode>& modes, std::span<const double> seconds, size_t first, Row& row) {
     for (size_t i = 0; i < modes.size(); ++i) {
       const double speed = mrays(seconds[i]);
       if (speed > row.embree_best_mrays) {
         row.embree_best_mrays = speed;
         row.embree_best_mode = modes[i].name();
+        best_ = answers_[first + i].get();
       }
       if (modes[i].packet != 1 || speed <= row.embree_single_mrays) continue;
       row.embree_single_mrays = speed;
       row.embree_single_mode = modes[i].name();
-      best_single = answers_[first + i].get();
+      best_single_ = answers_[first + i].get();
     }
-    if (best_single != nullptr) count_differences(mesh_, set_, *answers_[0], *best_single, row);
   }
 
   std::vector<Row> rows_of(const std::vector<Entrant>& ours, const std::vector<double>& seconds, const Row& row) const {
@@ -105,6 +103,8 @@ class Measurement {
       if (rows.empty() || rows.back().api != ours[i].api) {
         rows.push_back(row);
         rows.back().api = ours[i].api;
+        const Answers* theirs = ours[i].api == "single" ? best_single_ : best_;
+        if (theirs != nullptr) rows.back().differences = count_differences(mesh_, set_, *answers_[i], *theirs);
       }
       if (mrays(seconds[i]) <= rows.back().raygrain_mrays) continue;
       rows.back().raygrain_mrays = mrays(seconds[i]);
@@ -119,20 +119,23 @@ class Measurement {
   unsigned threads_;
   std::vector<std::unique_ptr<Answers>> answers_;  // ours, then the peer's
   std::vector<Contender> contenders_;
+  const Answers *best_ = nullptr, *best_single_ = nullptr;  // the peer's
 };
 
 }  // namespace
 
-void count_differences(const TriangleMesh& mesh, const BenchRays& set, const Answers& ours, const Answers& theirs,
-                       Row& row) {
+Differences count_differences(const TriangleMesh& mesh, const BenchRays& set, const Answers& ours,
+                              const Answers& theirs) {
+  Differences found;
   for (size_t i = 0; i < set.rays.size(); ++i) {
     if (!differ(set.any, ours, theirs, i)) continue;
-    ++row.differences;
-    if (row.oracle_asked == kMostQuestions) continue;
-    ++row.oracle_asked;
-    row.oracle_agrees += set.any ? occluded_reference(mesh, set.rays[i]) == (ours.flags[i] != 0)
-                                 : intersect_reference(mesh, set.rays[i]) == ours.hits[i];
+    ++found.count;
+    if (found.asked == kMostQuestions) continue;
+    ++found.asked;
+    found.agreed += set.any ? occluded_reference(mesh, set.rays[i]) == (ours.flags[i] != 0)
+                            : intersect_reference(mesh, set.rays[i]) == ours.hits[i];
   }
+  return found;
 }
 
 void measure(const Row& row, const TriangleMesh& mesh, const BenchRays& set, const std::vector<Entrant>& entrants,

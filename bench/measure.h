@@ -17,14 +17,14 @@ struct Entrant {
   Tracer trace;
 };
 
-/// Races the entrants (of each api the two fastest on the first 50,000 rays) and the peer's best modes, at least seven
-/// rounds, and reports a row for each api. `row` holds suite and scene. Differences between the answers are counted,
-/// and up to ten of them put to the oracle; entrants of one set must agree bit for bit, or std::logic_error.
+/// Races the entrants (of each api the two fastest on kRaysToRank rays from all over the set) and the peer's best
+/// modes, at least seven rounds, and reports a row for each api. `row` holds suite and scene. Entrants of one set must
+/// agree bit for bit, or std::logic_error.
 void measure(const Row& row, const TriangleMesh& mesh, const BenchRays& set, const std::vector<Entrant>& entrants,
              const Peer& peer, unsigned threads, Results& results);
 
 /// Counts the rays about which two tracers differ, and puts up to ten of them to the oracle.
-void count_differences(const TriangleMesh& mesh, const BenchRays& set, const Answers& ours, const Answers& theirs,
-                       Row& row);
+Differences count_differences(const TriangleMesh& mesh, const BenchRays& set, const Answers& ours,
+                              const Answers& theirs);
 
 }  // namespace raygrain::bench

@@ -14,10 +14,11 @@ std::string PeerMode::name() const {
 }
 
 std::vector<PeerMode> Peer::best_modes(const BenchRays& set, unsigned threads) const {
+  const BenchRays sample = spread_sample(set, kRaysToRank);
   std::vector<std::pair<double, PeerMode>> ranking;
   for (const PeerMode& mode : modes()) {
     const auto tracer = [&](bool any, const Part& part, unsigned n) { trace(mode, any, part, n); };
-    ranking.emplace_back(try_out(tracer, set, 50000, threads), mode);
+    ranking.emplace_back(try_out(tracer, sample, threads), mode);
   }
   std::ranges::stable_sort(ranking, {}, &std::pair<double, PeerMode>::first);
   std::vector<PeerMode> best;

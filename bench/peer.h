@@ -48,7 +48,8 @@ class Peer {
 
   void trace(const PeerMode& mode, bool any, const Part& part, unsigned threads) const;
 
-  /// Those to race, ranked on the first 50,000 rays: the two fastest of all and the two fastest for single rays.
+  /// Those to race, ranked on kRaysToRank rays from all over the set: the two fastest of all and the two fastest for
+  /// single rays.
   std::vector<PeerMode> best_modes(const BenchRays& set, unsigned threads) const;
 
  private:

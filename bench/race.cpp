@@ -27,12 +27,23 @@ std::vector<double> race(const std::vector<Contender>& contenders, size_t rays, 
   return seconds;
 }
 
-double try_out(const Tracer& tracer, const BenchRays& set, size_t count, unsigned threads) {
+BenchRays spread_sample(const BenchRays& set, size_t count) {
+  if (set.rays.size() <= count) return set;
+  const size_t blocks = (count + kRaysPerTask - 1) / kRaysPerTask;
+  BenchRays sample{set.name, set.any, {}};
+  for (size_t i = 0; i < blocks; ++i) {
+    const size_t begin = (set.rays.size() - kRaysPerTask) * i / std::max<size_t>(1, blocks - 1);
+    for (size_t k = begin; k < begin + kRaysPerTask; ++k) sample.rays.push_back(set.rays[k]);
+  }
+  return sample;
+}
+
+double try_out(const Tracer& tracer, const BenchRays& set, unsigned threads) {
   Answers answers(set.rays.size());
   double least = std::numeric_limits<double>::infinity();
   for (int round = 0; round < 2; ++round) {
     const Timer timer;
-    tracer(set.any, Part(set, answers, 0, std::min(count, set.rays.size())), threads);
+    tracer(set.any, Part(set, answers, 0, set.rays.size()), threads);
     least = std::min(least, timer.seconds());
   }
   return least;

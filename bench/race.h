@@ -15,6 +15,9 @@ namespace raygrain::bench {
 /// Rays per task of a parallel loop.
 inline constexpr size_t kRaysPerTask = 1024;
 
+/// Rays on which tracers are ranked.
+inline constexpr size_t kRaysToRank = 50000;
+
 /// Room for the answers to a set.
 struct Answers {
   std::vector<Hit> hits;
@@ -44,7 +47,10 @@ using Tracer = std::function<void(bool any, const Part& part, unsigned threads)>
 using Contender = std::function<void(size_t begin, size_t end)>;
 std::vector<double> race(const std::vector<Contender>& contenders, size_t rays, unsigned threads, int rounds);
 
-/// Seconds for the first `count` rays of a set, the least of two.
-double try_out(const Tracer& tracer, const BenchRays& set, size_t count, unsigned threads);
+/// About `count` rays of a set to rank tracers on: blocks of consecutive rays, spread evenly over the set in its order.
+BenchRays spread_sample(const BenchRays& set, size_t count);
+
+/// Seconds for all rays of a set, the least of two.
+double try_out(const Tracer& tracer, const BenchRays& set, unsigned threads);
 
 }  // namespace raygrain::bench

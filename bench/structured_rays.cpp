@@ -1,7 +1,6 @@
 #include "structured_rays.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -26,7 +25,7 @@ float tolerance_of(double degrees) {
 }
 
 StructuredRays sharing_direction(const std::string& name, bool any, std::vector<Ray> rays, InfluenceArea area) {
-  StructuredRays s{{name, any, std::move(rays)}, Sharing::kDirection, {}, {}, {std::move(area)}};
+  StructuredRays s{{name, any, std::move(rays)}, Sharing::kDirection, {}, {}, {std::move(area)}, "sun"};
   if (!s.set.rays.empty()) s.common = s.set.rays[0].direction;
   for (const Ray& ray : s.set.rays) s.points.push_back(ray.origin);
   return s;
@@ -55,7 +54,8 @@ StructuredRays pinhole(const TriangleMesh& mesh, size_t count, bool shuffled) {
                    Sharing::kStart,
                    camera.eye,
                    {},
-                   {camera_area("camera", camera.eye, camera.target, camera.fov_y, aspect, box)}};
+                   {camera_area("camera", camera.eye, camera.target, camera.fov_y, aspect, box)},
+                   "camera"};
   for (const Ray& ray : s.set.rays) s.points.push_back(ray.direction);
   return s;
 }
@@ -72,7 +72,8 @@ StructuredRays lamp(const TriangleMesh& mesh, size_t count) {
                    Sharing::kEnd,
                    place,
                    {},
-                   point_light_areas("lamp", place, box)};
+                   point_light_areas("lamp", place, box),
+                   "lamp"};
   for (const Ray& ray : s.set.rays) s.points.push_back(ray.origin);
   return s;
 }
@@ -81,8 +82,12 @@ StructuredRays lamp(const TriangleMesh& mesh, size_t count) {
 StructuredRays disc(const TriangleMesh& mesh, size_t count, double degrees, const std::string& name) {
   InfluenceArea area = directional_light_area("disc", kSun, mesh_bounds(mesh));
   area.tolerance = tolerance_of(degrees);
-  StructuredRays s{
-      {name, true, cast_rays(SurfaceRays{TowardsDirection{kSun}}, mesh, count, 3)}, Sharing::kNothing, {}, {}, {area}};
+  StructuredRays s{{name, true, cast_rays(SurfaceRays{TowardsDirection{kSun}}, mesh, count, 3)},
+                   Sharing::kNothing,
+                   {},
+                   {},
+                   {area},
+                   "sun"};
   Random random(13);
   const Vec3d axis = normalized(-to_double(kSun)), right = normalized(cross(axis, Vec3d{1, 0, 0}));
   const Vec3d up = cross(axis, right);
@@ -103,7 +108,8 @@ StructuredRays rectangle(const TriangleMesh& mesh, size_t count) {
                    Sharing::kNothing,
                    {},
                    {},
-                   point_light_areas("rectangle", place, box)};
+                   point_light_areas("rectangle", place, box),
+                   "lamp"};
   for (InfluenceArea& area : s.areas) area.tolerance = tolerance_of(8);
   return s;
 }
@@ -124,48 +130,8 @@ StructuredRays foreign(const TriangleMesh& mesh, size_t count, bool any) {
     s.set.rays.push_back({to_float(from), to_float(point() - from), 0, 1});
   }
   s.areas = {directional_light_area("sun", kSun, box)};
+  s.structure = "sun";
   return s;
-}
-
-uint32_t spread_bits(uint32_t x) {
-  x = (x | x << 8) & 0x00ff00ffu;
-  x = (x | x << 4) & 0x0f0f0f0fu;
-  x = (x | x << 2) & 0x33333333u;
-  return (x | x << 1) & 0x55555555u;
-}
-
-/// Where a ray crosses its frame, up to scale.
-struct Crossing {
-  float x, y;
-};
-
-Crossing crossing(const StructuredRays& rays, const AreaGeometry& geometry, const Ray& ray) {
-  const Frame& frame = geometry.frame();
-  if (geometry.is_plane()) {
-    const Vec3d p = to_local(frame, to_double(ray.origin));
-    return {static_cast<float>(p.x), static_cast<float>(p.y)};
-  }
-  const Vec3d from = rays.sharing == Sharing::kStart ? to_double(ray.direction) : to_double(ray.origin) - frame.origin;
-  const Vec3d d = to_local_direction(frame, from / length(from));  // octahedral: good for all directions
-  const double sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
-  const double x = d.x / sum, y = d.y / sum;
-  if (d.z >= 0) return {static_cast<float>(x), static_cast<float>(y)};
-  return {static_cast<float>(std::copysign(1 - std::abs(y), x)), static_cast<float>(std::copysign(1 - std::abs(x), y))};
-}
-
-struct Keyed {
-  uint32_t key, number;
-};
-
-void radix_sort(std::vector<Keyed>& items) {
-  std::vector<Keyed> other(items.size());
-  for (const unsigned shift : {0u, 11u, 22u}) {
-    std::array<uint32_t, 2049> begin{};
-    for (const Keyed& k : items) ++begin[(k.key >> shift & 2047u) + 1];
-    for (size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
-    for (const Keyed& k : items) other[begin[k.key >> shift & 2047u]++] = k;
-    items.swap(other);
-  }
 }
 
 }  // namespace
@@ -217,42 +183,6 @@ void trace_singly(const Accelerator& accelerator, const StructuredRays& rays, An
         answers.flags[i] = accelerator.occluded(rays.set.rays[i]) ? 1 : 0;
       else
         answers.hits[i] = accelerator.intersect(rays.set.rays[i]);
-    }
-  });
-}
-
-void sort_rays(const StructuredRays& rays, unsigned threads, SortedRays& sorted) {
-  const std::vector<Ray>& given = rays.set.rays;
-  const AreaGeometry geometry(rays.areas.front());
-  const Vec2d half = geometry.is_plane() ? geometry.window_half() : Vec2d{1, 1};
-  const auto scale_x = static_cast<float>(32767 / half.x), scale_y = static_cast<float>(32767 / half.y);
-  std::vector<Keyed> items(given.size());
-  const auto cell = [](float x) { return static_cast<uint32_t>(std::clamp(x + 32768, 0.0f, 65535.0f)); };
-  parallel_for(given.size(), 4096, threads, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const Crossing at = crossing(rays, geometry, given[i]);
-      items[i] = {spread_bits(cell(at.x * scale_x)) | spread_bits(cell(at.y * scale_y)) << 1, static_cast<uint32_t>(i)};
-    }
-  });
-  radix_sort(items);
-  sorted.set.any = rays.set.any;
-  sorted.set.rays.resize(given.size());
-  sorted.order.resize(given.size());
-  parallel_for(given.size(), 4096, threads, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      sorted.order[i] = items[i].number;
-      sorted.set.rays[i] = given[items[i].number];
-    }
-  });
-}
-
-void unsort(const SortedRays& sorted, const Answers& found, bool any, unsigned threads, Answers& answers) {
-  parallel_for(sorted.order.size(), 4096, threads, [&](size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      if (any)
-        answers.flags[sorted.order[i]] = found.flags[i];
-      else
-        answers.hits[sorted.order[i]] = found.hits[i];
     }
   });
 }

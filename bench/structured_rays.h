@@ -19,6 +19,7 @@ struct StructuredRays {
   Vec3 common;               // direction, end or start
   std::vector<Vec3> points;  // origins, or directions where the start is shared
   std::vector<InfluenceArea> areas;
+  std::string structure;  // what the areas have beyond the global tree: sun, lamp or camera
 };
 
 /// sun_any, sun_closest_scan, sun_closest_shuffled, point_any, pinhole_closest_scan, pinhole_closest_shuffled,
@@ -33,15 +34,5 @@ StructuredRays sun_rays(const TriangleMesh& mesh, Vec3 light, size_t count);
 void trace_batch(const Accelerator& accelerator, const StructuredRays& rays, Answers& answers, unsigned threads);
 void trace_singly(const Accelerator& accelerator, const StructuredRays& rays, Answers& answers, unsigned threads);
 void trace_array(const Accelerator& accelerator, const StructuredRays& rays, Answers& answers, unsigned threads);
-
-/// The rays in the order of the Morton code of where they cross their frame: what sorts them best for anybody's tree.
-struct SortedRays {
-  std::vector<uint32_t> order;  // number of the i-th sorted ray
-  BenchRays set;
-};
-/// By a radix sort: what a user would do before a call of a tracer.
-void sort_rays(const StructuredRays& rays, unsigned threads, SortedRays& sorted);
-/// The answers to sorted rays, in the given order.
-void unsort(const SortedRays& sorted, const Answers& found, bool any, unsigned threads, Answers& answers);
 
 }  // namespace raygrain::bench

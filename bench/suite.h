@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,26 @@ struct Settings {
   std::vector<size_t> sizes;      // rays a call, of the suite `sizes`; none is 0
 };
 
-/// One ray set, traced by one interface of raygrain and by Embree. 0 Mrays/s: not measured.
+/// How often two tracers differ about a set, and what brute force says of some of these rays.
+struct Differences {
+  size_t count = 0;              // hit here and miss there, or t further apart than rounding explains
+  size_t asked = 0, agreed = 0;  // of up to ten: how often brute force gave raygrain's answer
+};
+
+/// What the areas of a light or a camera have beyond the global tree, beside the global tree of preset `best`.
+struct AreaBuildRow {
+  std::string scene;
+  size_t triangles = 0;
+  std::string structure;  // sun, lamp or camera
+  unsigned threads = 1;
+  double build_seconds = 0;
+  double global_best_build_seconds = 0;  // binary and wide tree
+  size_t memory_bytes = 0;
+  size_t global_memory_bytes = 0;       // wide and binary tree, as accelerators keep them; no corners of triangles
+  size_t global_wide_memory_bytes = 0;  // ... the wide tree alone
+};
+
+/// One ray set, traced by one interface of raygrain and by Embree. 0 Mrays/s, and nothing: not measured.
 struct Row {
   std::string suite, scene;
   size_t triangles = 0;
@@ -28,18 +48,17 @@ struct Row {
   std::string tree;  // raygrain's: the fastest of those that the suite built, as Embree's mode is
   double raygrain_mrays = 0, embree_single_mrays = 0, embree_best_mrays = 0;
   std::string embree_single_mode, embree_best_mode;
-  size_t differences = 0;                      // hit here and miss there, or t further apart than rounding explains
-  size_t oracle_agrees = 0, oracle_asked = 0;  // of the differences: how often brute force gave raygrain's answer
+  std::optional<Differences> differences;  // from its best mode; of single rays from its best single-ray mode
 
   // Of the suite `rays` alone.
   double embree_sorted_mrays = 0;  // on rays sorted for it, the time for sorting counted
   std::string embree_sorted_mode;
-  double global_mrays = 0;           // raygrain's global tree alone, by the same interface
-  double build_seconds = 0;          // of what the areas have beyond the global tree, on all threads
-  size_t memory_bytes = 0;           // the same
-  double break_even_rays = 0;        // from so many rays on the build pays off against the global tree; infinity: never
-  double cost = 0, global_cost = 0;  // of turned scenes: pruned cost per ray; cells and wide nodes 2, triangles 1.2
-  int turn = -1;                     // which of the rotations or directions
+  std::optional<Differences> sorted_differences;  // of batches
+  double global_mrays = 0;                        // raygrain's global tree alone, by the same interface
+  std::optional<AreaBuildRow> area_build;
+  std::optional<double> break_even_rays;    // so many until the build has paid off against the global tree; inf: never
+  std::optional<double> cost, global_cost;  // of turned scenes: pruned, a ray; cells and wide nodes 2, triangles 1.2
+  int turn = -1;                            // which of the rotations or directions
 };
 
 struct BuildRow {
@@ -79,6 +98,7 @@ struct StructureRow {
 
 struct Results {
   std::vector<Row> rows;
+  std::vector<AreaBuildRow> area_builds;
   std::vector<BuildRow> builds;
   std::vector<SizeRow> sizes;
   std::vector<StructureRow> structures;
@@ -109,6 +129,7 @@ BenchScene load_bench_scene(const std::string& source);
 
 /// Adds to the results and prints at once.
 void report(const Row& row, Results& results);
+void report(const AreaBuildRow& row, Results& results);
 void report(const BuildRow& row, Results& results);
 void report(const SizeRow& row, Results& results);
 void print_summary(const Results& results);

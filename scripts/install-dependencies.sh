@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs raygrain's Debian packages: `build` (library, program, tests; the default) or `full` (Clang, coverage, format too),
-# or `bench` (Embree too), `pages` (node and npm too), `browser` (Chromium too).
+# or `bench` (Embree and Python too), `pages` (node and npm too), `browser` (Chromium too).
 # Works as root and with sudo; does nothing when everything is there.
 set -euo pipefail
 
@@ -13,6 +13,7 @@ fi
 
 if [ "${1:-build}" = bench ]; then
   packages+=(libembree-dev)
+  command -v python3 >/dev/null || packages+=(python3)
 fi
 
 if [ "${1:-build}" = pages ] && ! command -v npm >/dev/null; then
