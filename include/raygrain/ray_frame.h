@@ -111,4 +111,10 @@ Vec3d frame_face_weights(const RayFrame& frame, std::span<const Vec3> directions
 /// whose slope is their offset from the eye. Rays that the frame cannot tell do not count; without any: (0, 0, 1).
 Vec3d frame_slope_weights(const RayFrame& frame, std::span<const Ray> rays);
 
+/// Face weights of an area's rays within its tolerance, for its own frames: directions evenly spread over the cone of
+/// half angle acos(1 - tolerance), for a point area around those of rays that start on its near plane. Tolerance 0:
+/// bit for bit those of the area's one direction, or (0, 0, 1) for a point area; towards 1 those of all directions.
+/// Throws Error (kUsage) for a projective frame of a plane area and the other way round.
+Vec3d frame_area_weights(const RayFrame& frame, const AreaGeometry& area);
+
 }  // namespace raygrain

@@ -19,7 +19,7 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
 
 /// The tree in the area's ray space over these triangles: in the frame that options name, or in the one of least
 /// predicted cost, found on a subset. Nothing where no frame suits. `samples`: rays whose directions the measure is
-/// made for; without any the area's own.
+/// made for; without any those within the area's tolerance.
 std::optional<FrameTree> build_area_frame_tree(const InfluenceArea& area,
                                                const std::shared_ptr<const TriangleCorners>& corners,
                                                std::span<const uint32_t> triangles, std::span<const Ray> samples,

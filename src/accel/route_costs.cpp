@@ -7,6 +7,8 @@
 
 #include "raygrain/rays.h"
 
+#include "geometry/cone_directions.h"
+
 namespace raygrain {
 namespace {
 
@@ -40,18 +42,13 @@ struct Samples {
   std::vector<Ray> along, off;
 };
 
-/// Directions spread over the cap of the area's tolerance.
+/// Directions spread over the cap of the area's tolerance, around each ray's own.
 void spread(const InfluenceArea& area, std::vector<Ray>& rays) {
-  const double least = std::max(0.1, 1 - static_cast<double>(area.tolerance));
-  const double radius = std::sqrt(std::max(0.0, 1 / (least * least) - 1));
+  const double tolerance = std::min(0.9, static_cast<double>(area.tolerance));
   for (size_t i = 0; i < rays.size(); ++i) {
     const Vec3d d = to_double(rays[i].direction);
-    const Frame frame = make_frame(to_double(rays[i].origin), d, {});
-    // Radii fill the disc evenly, the ways to the side take turns.
-    const double r = radius * std::sqrt((static_cast<double>(i) + 0.5) / static_cast<double>(rays.size()));
-    const double turn = static_cast<double>(i * 29 % 64) / 32 - 1, side = i % 2 == 0 ? 1 : -1;
-    const double across = std::sqrt(std::max(0.0, 1 - turn * turn)) * side;
-    rays[i].direction = to_float(d + (frame.right * turn + frame.up * across) * (r * length(d)));
+    const Frame axes = make_frame(to_double(rays[i].origin), d, {});
+    rays[i].direction = to_float(cone_direction(axes, tolerance, i, rays.size()) * length(d));
   }
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "raygrain/error.h"
 #include "raygrain/ray_frame.h"
 
 #include "geometry/frame_polygon.h"
@@ -152,34 +151,6 @@ FrameColumn to_column(const FrameSegment& s) {
   column.sure_hi = loosely_below(s.sure_hi);
   column.ascending = s.ascending;
   return column;
-}
-
-Vec3d frame_face_weights(const RayFrame& frame, std::span<const Vec3> directions) {
-  if (frame.is_projective() || directions.empty())
-    throw Error(ErrorCode::kUsage, "frame_face_weights",
-                directions.empty() ? "there are no directions" : "a projective frame has no face weights",
-                directions.empty() ? "" : "Use frame_slope_weights");
-  Vec3d sum;
-  for (const Vec3 direction : directions) {
-    const Vec3d v = normalized(to_double(direction));
-    for (size_t k = 0; k < 3; ++k) sum[static_cast<int>(k)] += std::abs(dot(frame.rows[k], v));
-  }
-  const double determinant = std::abs(dot(frame.rows[0], cross(frame.rows[1], frame.rows[2])));
-  return sum / (static_cast<double>(directions.size()) * determinant);
-}
-
-Vec3d frame_slope_weights(const RayFrame& frame, std::span<const Ray> rays) {
-  Vec3d sum;
-  double count = 0;
-  constexpr float kMost = std::numeric_limits<float>::max();
-  for (const Ray& ray : rays) {
-    FrameSegment s;
-    if (!is_valid(ray)) continue;
-    if (make_segment(frame, ray, {-kMost, kMost}, s) != FrameFit::kServed) continue;
-    sum = sum + Vec3d{std::abs(s.slope_x), std::abs(s.slope_y), 0};
-    ++count;
-  }
-  return count > 0 ? Vec3d{sum.x / count, sum.y / count, 1} : Vec3d{0, 0, 1};
 }
 
 }  // namespace raygrain

@@ -218,48 +218,5 @@ TEST(RayFrame, ShearsNeedTheirAxis) {
   EXPECT_THROW(parallel_frame(FrameKind::kRotation, {0, 0, 0}, {}), Error);
 }
 
-// The two limits of the measure: one direction is the xy extent, all directions are the surface of the world's box.
-TEST(RayFrame, FaceWeightsHaveTheirLimits) {
-  for_frames(50, [&](const RayFrame& frame, const AreaGeometry& area, Random& random) {
-    if (frame.is_projective()) {
-      EXPECT_THROW(frame_face_weights(frame, std::vector{Vec3{0, 0, 1}}), Error);
-      return;
-    }
-    const Vec3d one = frame_face_weights(frame, std::vector{to_float(area.frame().forward)});
-    ASSERT_LT(one.x + one.y, 1e-6 * one.z);
-    std::vector<Vec3> all;
-    for (int i = 0; i < 40000; ++i) {
-      const Vec3d v{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-      if (dot(v, v) <= 1 && dot(v, v) > 0.01) all.push_back(to_float(v));
-    }
-    const Vec3d w = frame_face_weights(frame, all);
-    if (frame.kind == FrameKind::kRotation) {
-      for (int k = 0; k < 3; ++k) ASSERT_NEAR(w[k], 0.5, 0.01);
-      return;
-    }
-    // A sheared frame's box is a parallelepiped of the world, and |(M v)_k| averages |row_k| / 2: its surface / 4.
-    for (int k = 0; k < 3; ++k)
-      ASSERT_NEAR(w[k], 0.5 * length(frame.rows[static_cast<size_t>(k)]),
-                  0.015 * length(frame.rows[static_cast<size_t>(k)]));
-  });
-}
-
-TEST(RayFrame, SlopesOfRaysAtAPointAreTheirOffsets) {
-  for_frames(40, [&](const RayFrame& frame, const AreaGeometry& area, Random& random) {
-    if (!frame.is_projective()) return;
-    std::vector<Ray> exact, offset;
-    const double shift = 0.01 * frame.near_z;
-    for (int i = 0; i < 50; ++i) {
-      const Vec3d from = test::point_inside(area.region(), random);
-      const Vec3d to = frame.center + frame.rows[0] * shift;
-      exact.push_back({to_float(from), to_float(frame.center - from)});
-      offset.push_back({to_float(from), to_float(to - from)});
-    }
-    EXPECT_LT(frame_slope_weights(frame, exact).x, 1e-5 * test::diameter(area.region()));
-    EXPECT_NEAR(frame_slope_weights(frame, offset).x, shift, 1e-5 * test::diameter(area.region()));
-    EXPECT_EQ(frame_slope_weights(frame, {}), (Vec3d{0, 0, 1}));
-  });
-}
-
 }  // namespace
 }  // namespace raygrain
