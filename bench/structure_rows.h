@@ -14,7 +14,7 @@ void report(const StructureRow& row, Results& results);
 
 nlohmann::ordered_json to_json(const StructureRow& row);
 
-/// In Markdown, for each size of scenes and each number of threads.
+/// In Markdown, for each size of scenes and each number of threads; scripts/paste-tables.sh puts them into a document.
 void print_structure_tables(std::span<const StructureRow> rows);
 
 }  // namespace raygrain::bench

@@ -171,18 +171,20 @@ std::string group_of(const StructureRow& row) {
   return row.scene;
 }
 
-void print_group(const std::string& group, const Rows& rows, unsigned threads) {
+/// "100k, 1 thread: city 100k (108051 triangles) / forest 100k ...".
+void print_caption(const std::string& group, const Rows& rows, unsigned threads) {
   std::string scenes;
   for (const StructureRow* row : choose(rows, kRays.front().key, "global tree/single"))
     scenes += fmt::format("{}{} ({} triangles)", scenes.empty() ? "" : " / ", row->scene, row->triangles);
-  fmt::print("\n{}, {} thread{}: {}\n\n", group, threads, threads == 1 ? "" : "s", scenes);
+  fmt::print("{}, {} thread{}: {}\n\n", group, threads, threads == 1 ? "" : "s", scenes);
+}
+
+void print_structures(const Rows& rows) {
   print_times(rows);
   fmt::print("\n");
   print_ratios(rows);
   fmt::print("\n");
   print_costs(rows);
-  fmt::print("\n");
-  print_grids(rows);
 }
 
 template <class T, class Of>
@@ -193,20 +195,33 @@ std::vector<T> different(std::span<const StructureRow> rows, const Of& of) {
   return values;
 }
 
+/// Between marks, so that a script can put it into a document; for each size of scenes and each number of threads.
+void print_block(const std::string& name, std::span<const StructureRow> rows,
+                 const std::function<void(const Rows&)>& print) {
+  fmt::print("\n<!-- structures:{} -->\n", name);
+  const char* gap = "";
+  for (const unsigned threads : different<unsigned>(rows, [](const StructureRow& r) { return r.threads; })) {
+    for (const std::string& group : different<std::string>(rows, group_of)) {
+      Rows chosen;
+      for (const StructureRow& row : rows)
+        if (row.threads == threads && group_of(row) == group) chosen.push_back(&row);
+      fmt::print("{}", gap);
+      print_caption(group, chosen, threads);
+      print(chosen);
+      gap = "\n";
+    }
+  }
+  fmt::print("<!-- /structures:{} -->\n", name);
+}
+
 }  // namespace
 
 void print_structure_tables(std::span<const StructureRow> rows) {
   size_t differences = 0;
   for (const StructureRow& row : rows) differences += row.differences;
   fmt::print("\nanswers that are not the global tree's: {}\n", differences);
-  for (const unsigned threads : different<unsigned>(rows, [](const StructureRow& r) { return r.threads; })) {
-    for (const std::string& group : different<std::string>(rows, group_of)) {
-      Rows chosen;
-      for (const StructureRow& row : rows)
-        if (row.threads == threads && group_of(row) == group) chosen.push_back(&row);
-      print_group(group, chosen, threads);
-    }
-  }
+  print_block("pays", rows, print_structures);
+  print_block("cells", rows, print_grids);
 }
 
 }  // namespace raygrain::bench

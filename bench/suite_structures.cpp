@@ -14,7 +14,7 @@ namespace raygrain::bench {
 namespace {
 
 constexpr size_t kLarge = 400000;  // triangles
-constexpr int kRounds = 4, kRoundsOfLarge = 3;
+constexpr int kRounds = 3;
 constexpr int kBuilds = 3;  // of small scenes
 
 /// The sets that are raced, those of the same areas together.
@@ -72,7 +72,7 @@ class StructuresSuite {
       add([&](Answers& answers) {
         peer_.trace(mode, rays.set.any, Part(rays.set, answers, 0, rays.set.rays.size()), threads);
       });
-    race_whole(all, is_large() ? kRoundsOfLarge : kRounds, threads);
+    race_whole(all, kRounds, threads);
     StructureRow row = new_row(rays, threads);
     add_peer_figures(modes, std::span(all).subspan(structures.size()), row);
     row.global_build_seconds = shared.cost.seconds;
