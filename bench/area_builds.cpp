@@ -21,9 +21,47 @@ std::vector<const StructuredRays*> one_of_each(std::span<const StructuredRays> s
   return chosen;
 }
 
+constexpr double kNever = std::numeric_limits<double>::infinity();
+
 void keep_least(double& least, const Stopwatch& stopwatch) {
   least = std::min(least, stopwatch.seconds());
 }
+
+/// A structure's areas together, and each alone.
+class AreaTimes {
+ public:
+  AreaTimes(const StructuredRays& set, const std::shared_ptr<const TriangleMesh>& mesh, const CoverageOptions& options)
+      : areas_(set.areas), mesh_(mesh), options_(options), alone_(areas_.size(), kNever), bytes_(areas_.size()) {}
+
+  void build() {
+    {
+      const Stopwatch stopwatch(options_.threads);
+      const std::vector<Coverage> coverages = Coverage::of_areas(mesh_, areas_, options_);
+      keep_least(together_, stopwatch);
+      for (size_t i = 0; i < areas_.size(); ++i) bytes_[i] = coverages[i].memory_bytes();
+    }
+    if (areas_.size() == 1) alone_[0] = together_;
+    for (size_t i = 0; areas_.size() > 1 && i < areas_.size(); ++i) {
+      const Stopwatch stopwatch(options_.threads);
+      const Coverage coverage(mesh_, areas_[i], options_);
+      keep_least(alone_[i], stopwatch);
+    }
+  }
+
+  void write(AreaBuildRow& row) const {
+    row.build_seconds = together_;
+    row.area_build_seconds = std::ranges::max(alone_);
+    row.area_memory_bytes = std::ranges::max(bytes_);
+  }
+
+ private:
+  const std::vector<InfluenceArea>& areas_;
+  const std::shared_ptr<const TriangleMesh>& mesh_;
+  const CoverageOptions& options_;
+  double together_ = kNever;
+  std::vector<double> alone_;
+  std::vector<size_t> bytes_;
+};
 
 void measure_memory(const TriangleMesh& mesh, const StructuredRays& set, const Accelerator& global, AreaBuildRow& row) {
   const Accelerator with(mesh, set.areas, rays_options());
@@ -38,22 +76,20 @@ void measure_times(const TriangleMesh& mesh, const std::vector<const StructuredR
   const unsigned threads = rows.front().threads;
   CoverageOptions options = rays_options().coverage.value_or(CoverageOptions{});
   options.threads = threads;
-  double best = std::numeric_limits<double>::infinity();
-  for (AreaBuildRow& row : rows) row.build_seconds = best;
+  std::vector<AreaTimes> times;
+  for (const StructuredRays* set : chosen) times.emplace_back(*set, shared, options);
+  double best = kNever;
   const int rounds = mesh.triangle_count() > kLarge ? 3 : 7;
   for (int round = 0; round < rounds; ++round) {
-    const Stopwatch stopwatch(threads);
     {
+      const Stopwatch stopwatch(threads);
       const Bvh binary = build_preset(mesh, Quality::kBest, threads);
       const WideBvh tree(binary, mesh, {.threads = threads});
       keep_least(best, stopwatch);
     }
-    for (size_t i = 0; i < chosen.size(); ++i) {
-      const Stopwatch own(threads);
-      const std::vector<Coverage> coverages = Coverage::of_areas(shared, chosen[i]->areas, options);
-      keep_least(rows[i].build_seconds, own);
-    }
+    for (AreaTimes& t : times) t.build();
   }
+  for (size_t i = 0; i < rows.size(); ++i) times[i].write(rows[i]);
   for (AreaBuildRow& row : rows) row.global_best_build_seconds = best;
 }
 

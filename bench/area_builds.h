@@ -14,8 +14,8 @@ namespace raygrain::bench {
 /// The accelerators of the suite of rays.
 AcceleratorOptions rays_options();
 
-/// A row for each structure of the sets and each count of threads: the areas' coverage alone and the global tree of
-/// preset `best` with its collapse are built by turns, and the least time of each counts.
+/// A row for each structure of the sets and each count of threads: the areas' coverage, that of each area alone and the
+/// global tree of preset `best` with its collapse are built by turns, and the least time of each counts.
 std::vector<AreaBuildRow> measure_area_builds(const BenchScene& scene, std::span<const StructuredRays> sets,
                                               const std::vector<unsigned>& threads);
 

@@ -37,8 +37,10 @@ void add_differences(Json& json, const std::string& prefix, const std::optional<
 void add_costs(Json& json, const std::optional<AreaBuildRow>& s) {
   json["structure"] = s ? Json(s->structure) : Json();
   json["build_seconds"] = s ? Json(s->build_seconds) : Json();
+  json["area_build_seconds"] = s ? Json(s->area_build_seconds) : Json();
   json["global_best_build_seconds"] = s ? Json(s->global_best_build_seconds) : Json();
   json["memory_bytes"] = s ? Json(s->memory_bytes) : Json();
+  json["area_memory_bytes"] = s ? Json(s->area_memory_bytes) : Json();
   json["global_memory_bytes"] = s ? Json(s->global_memory_bytes) : Json();
   json["global_wide_memory_bytes"] = s ? Json(s->global_wide_memory_bytes) : Json();
 }

@@ -35,6 +35,8 @@ struct AreaBuildRow {
   double build_seconds = 0;
   double global_best_build_seconds = 0;  // binary and wide tree
   size_t memory_bytes = 0;
+  double area_build_seconds = 0;        // the slowest of the areas, built alone
+  size_t area_memory_bytes = 0;         // the coverage of the largest
   size_t global_memory_bytes = 0;       // wide and binary tree, as accelerators keep them; no corners of triangles
   size_t global_wide_memory_bytes = 0;  // ... the wide tree alone
 };

@@ -27,7 +27,8 @@ ANY = [SUN_ANY, LAMP_ANY]
 CLOSEST = ["sun_closest_shuffled", "pinhole_closest_shuffled"]
 IN_ORDER = ["sun_closest_scan", "pinhole_closest_scan"]
 WIDE = ["disc_any_0.27", "disc_any_5", "rect_any"]
-STRUCTURES = ["sun", "lamp", "camera"]
+# Columns: a title, whose areas, and before the keys "area_" for the slowest or largest of its areas alone.
+STRUCTURES = {"sun": ("sun", ""), "lamp": ("lamp", ""), "a frustum": ("lamp", "area_"), "camera": ("camera", "")}
 NOISE = 0.03  # of a ray's time: what saves less is told apart from nothing by no run
 
 
@@ -142,35 +143,34 @@ def milliseconds(seconds):
 def builds(f):
     head, lines = ["scene, milliseconds"], [[f.label(s)] for s in f.scenes] + [["**mean**"]]
     for n in f.threads:
-        found = {(s, name): f.structure(s, name, n) for s in f.scenes for name in STRUCTURES}
-        share = {k: s["build_seconds"] / s["global_best_build_seconds"] for k, s in found.items() if s}
-        head += [f"`best` tree, {words(n)}"] + STRUCTURES
+        head += [f"`best` tree, {words(n)}"] + list(STRUCTURES)
+        shares = {title: [] for title in STRUCTURES}
         for scene, line in zip(f.scenes, lines):
-            best = found[scene, STRUCTURES[0]]
-            line.append(milliseconds(best["global_best_build_seconds"]) if best else "-")
-            for name in STRUCTURES:
-                s = found[scene, name]
-                line.append(f"{milliseconds(s['build_seconds'])}, {share[scene, name]:.2f}" if s else "-")
-        lines[-1] += [""] + [number(geometric_mean(v for k, v in share.items() if k[1] == name)) for name in STRUCTURES]
+            found = f.structure(scene, "sun", n)
+            line.append(milliseconds(found["global_best_build_seconds"]) if found else "-")
+            for title, (name, prefix) in STRUCTURES.items():
+                s = f.structure(scene, name, n)
+                if s:
+                    seconds = s[prefix + "build_seconds"]
+                    shares[title].append(seconds / s["global_best_build_seconds"])
+                line.append(f"{milliseconds(seconds)}, {shares[title][-1]:.2f}" if s else "-")
+        lines[-1] += [""] + [number(geometric_mean(v)) for v in shares.values()]
     return table(head, lines)
 
 
 def memory(f):
-    def mebibytes(s, key):
-        return s[key] / 2**20
-
-    def cell(s):
+    def cell(s, prefix):
         if not s:
             return "-"
-        here, trees, wide = (mebibytes(s, k + "memory_bytes") for k in ("", "global_", "global_wide_"))
+        here, trees, wide = (s[k + "memory_bytes"] / 2**20 for k in (prefix, "global_", "global_wide_"))
         return f"{here:.1f}, {here / trees:.2f} ({here / wide:.2f})"
     lines = []
     for scene in f.scenes:
-        found = [f.structure(scene, name, f.threads[0]) for name in STRUCTURES]
-        trees = "-" if not found[0] else (f"{mebibytes(found[0], 'global_memory_bytes'):.1f} "
-                                          f"({mebibytes(found[0], 'global_wide_memory_bytes'):.1f})")
-        lines.append([f.label(scene), trees] + [cell(s) for s in found])
-    return table(["scene, MiB", "global trees (wide alone)"] + STRUCTURES, lines)
+        s = f.structure(scene, "sun", f.threads[0])
+        trees = f"{s['global_memory_bytes'] / 2**20:.1f} ({s['global_wide_memory_bytes'] / 2**20:.1f})" if s else "-"
+        lines.append([f.label(scene), trees] + [cell(f.structure(scene, name, f.threads[0]), prefix)
+                                                for name, prefix in STRUCTURES.values()])
+    return table(["scene, MiB", "global trees (wide alone)"] + list(STRUCTURES), lines)
 
 
 def rays_text(row):
