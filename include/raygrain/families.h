@@ -32,7 +32,8 @@ std::vector<NamedMesh> closed_mesh_families(uint64_t seed);
 /// triangles (some families have only one, closed ones at least 12).
 NamedMesh random_family_mesh(size_t triangles, uint64_t seed);
 
-/// Plane and point areas: covering the mesh, cutting through it, one behind the other, overlapping, beside it.
+/// Plane and point areas: covering the mesh, cutting through it, one behind the other, overlapping, beside it; one with
+/// a field of view of 120 to 179.9 degrees.
 std::vector<InfluenceArea> areas_around(const TriangleMesh& mesh, uint64_t seed);
 
 /// A mix: random, aimed at edges, at vertices, axis-parallel, lying in faces' planes, grazing, starting on surfaces,

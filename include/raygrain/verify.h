@@ -45,10 +45,11 @@ struct RayGroup {
 /// Where a structure writes what it knows; all have the size of the group's rays.
 struct RayAnswers {
   static constexpr uint8_t kNearest = 1, kAny = 2;
+  static constexpr uint8_t kColumn = 4, kCone = 8, kBatch = 16;  // how, where a structure says so: for counts alone
 
   std::span<Hit> nearest;
   std::span<uint8_t> any;   // 1: there is a hit
-  std::span<uint8_t> told;  // which of these two were answered; 0 before
+  std::span<uint8_t> told;  // which of these two were answered, and how; 0 before
   /// Answers are about the ray as far as it reaches up to this t; infinity before.
   std::span<float> until;
 };
@@ -85,7 +86,7 @@ struct VerifyTally {
   uint64_t leaks = 0;        // of the last two, those that did not
   double seconds = 0;
   /// Of the comparisons, those of structures and rays with something in common, e.g. "wide, mixed rays", "isa avx2",
-  /// "measure PAH", "builder spatial", "frame shear_y", "batches"; each comparison is in several.
+  /// "measure PAH", "builder spatial", "frame shear_y", "batches", "columns"; each comparison is in several.
   std::map<std::string, uint64_t> comparisons_of;
 
   void add(const VerifyTally& other);

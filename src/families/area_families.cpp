@@ -2,6 +2,7 @@
 #include <array>
 #include <bit>
 #include <string>
+#include <utility>
 
 #include "raygrain/families.h"
 #include "raygrain/rays.h"
@@ -132,13 +133,16 @@ std::vector<InfluenceArea> areas_around(const TriangleMesh& mesh, uint64_t seed)
                                    fov_y, size(near_z * r), size(far_z * r)},
                          tolerance};
   };
+  constexpr std::array kWide{std::pair{120.0f, 140.0f}, std::pair{170.0f, 120.0f}, std::pair{179.0f, 170.0f},
+                             std::pair{179.9f, 179.9f}};
+  const auto [fov_x, fov_y] = kWide[seed % kWide.size()];
   return {
       plane("whole", {0, 0, -1}, {0, 0, 1}, 1, 1, 2, 0.01f),
       plane("first half", {0, 0.9, 0.1}, {0, -1, 0}, 0.4, 0.6, 0.9, 0.05f),
       plane("second half", {0, 0, 0.1}, {0, -3, 0}, 0.5, 0.5, 1, 0.5f),
       plane("oblique", oblique * -0.4, oblique, 0.3, 0.2, 0.7, 0.3f),
       point("lamp", sideways * 1.5, -sideways, 40, 50, 0.2, 3, 0.01f),
-      point("inside", {0.1, -0.1, 0.05}, sideways, 120, 140, 0.01, 0.8, 0.4f),
+      point("inside", {0.1, -0.1, 0.05}, sideways, fov_x, fov_y, 0.01, 0.8, 0.4f),
       point("beside", {3, 0, 0}, {1, 0, 0}, 60, 60, 0.1, 1, 0.01f),
   };
 }

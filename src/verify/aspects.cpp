@@ -61,4 +61,14 @@ std::vector<std::string> aspects_of(const std::string& structure, RayGroupKind r
   }
 }
 
+std::vector<std::string> aspects_told(const std::string& structure, uint8_t told) {
+  std::vector<std::string> aspects;
+  const std::string kind = structure.substr(0, structure.find(' '));
+  if ((told & RayAnswers::kColumn) != 0) aspects.push_back("columns");
+  if ((told & RayAnswers::kCone) != 0) aspects.push_back("cones");
+  if ((told & RayAnswers::kBatch) != 0) aspects.push_back(kind + ": batch");
+  if (kind == "coverage" && (told & RayAnswers::kBatch) == 0) aspects.push_back("coverage: single");
+  return aspects;
+}
+
 }  // namespace raygrain::verification

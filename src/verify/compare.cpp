@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdio>
 #include <exception>
+#include <numeric>
 
 #include "verify/aspects.h"
 #include "verify/oracle.h"
@@ -32,8 +33,22 @@ std::string wrong(const Room& room, size_t i, const Hit& nearest) {
   return {};
 }
 
-int answers_told(uint8_t told) {
-  return std::popcount(static_cast<unsigned>(told));
+uint64_t answers_told(uint8_t told) {
+  return static_cast<uint64_t>(std::popcount(unsigned{told} & (RayAnswers::kNearest | RayAnswers::kAny)));
+}
+
+void count_aspects(const std::string& structure, RayGroupKind rays, std::span<const uint8_t> told, VerifyTally& tally) {
+  std::array<uint64_t, 256> answers{};  // by how they were told
+  for (const uint8_t how : told) answers[how] += answers_told(how);
+  const uint64_t all = std::accumulate(answers.begin(), answers.end(), uint64_t{0});
+  tally.comparisons += all;
+  if (all == 0) return;
+  for (const std::string& aspect : aspects_of(structure, rays)) tally.comparisons_of[aspect] += all;
+  for (size_t how = 0; how < answers.size(); ++how) {
+    if (answers[how] == 0) continue;
+    for (const std::string& aspect : aspects_told(structure, static_cast<uint8_t>(how)))
+      tally.comparisons_of[aspect] += answers[how];
+  }
 }
 
 bool is_leak(const Room& room, size_t i) {
@@ -67,20 +82,16 @@ std::optional<Difference> compare(const RayStructure& structure, const Round& ro
     ++tally.structures;
     for (size_t g = 0; g < round.groups.size(); ++g) {
       const RayGroup& group = round.groups[g];
-      const uint64_t before = tally.comparisons;
       Room room(group.rays.size());
       answer(group, room.answers());
       for (size_t i = 0; i < group.rays.size(); ++i) {
-        tally.comparisons += static_cast<uint64_t>(answers_told(room.told[i]));
         if (group.must_hit && room.until[i] == kInf && is_leak(room, i)) ++tally.leaks;
         std::string what = wrong(room, i, round.expected[g][i]);
         if (what.empty()) continue;
         if (!is_really_wrong(round, room, g, i)) what.insert(0, "the tree of reference is wrong: ");
         note({what, g, i});
       }
-      if (tally.comparisons == before) continue;
-      for (const std::string& aspect : aspects_of(structure.name, group.kind))
-        tally.comparisons_of[aspect] += tally.comparisons - before;
+      count_aspects(structure.name, group.kind, room.told, tally);
     }
   } catch (const std::exception& error) {
     note({std::string("threw: ") + error.what(), 0, 0, true});

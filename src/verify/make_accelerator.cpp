@@ -65,8 +65,8 @@ void answer_shared(const StructureSpec& spec, const Accelerator& scene, const Ra
     scene.intersect(some, group.shared, hits, spec.threads, counted);
     scene.occluded(some, group.shared, flags, spec.threads, counted);
   }
-  if (group.kind != RayGroupKind::kTowards) tell(answers, RayAnswers::kNearest);
-  if (group.kind != RayGroupKind::kFrom) tell(answers, RayAnswers::kAny);
+  if (group.kind != RayGroupKind::kTowards) tell(answers, RayAnswers::kNearest | RayAnswers::kBatch);
+  if (group.kind != RayGroupKind::kFrom) tell(answers, RayAnswers::kAny | RayAnswers::kBatch);
 }
 
 }  // namespace

@@ -40,18 +40,18 @@ void answer_batch(const Coverage& coverage, const RayGroup& group, const RayAnsw
   const std::vector<Vec3> origins = origins_of(group.rays);
   if (group.kind == RayGroupKind::kDirection && coverage.sense(group.shared) == 1) {
     coverage.occluded(origins, group.shared, answers.any, rest, {}, threads);
-    tell_all_but(rest, answers, RayAnswers::kAny);
+    tell_all_but(rest, answers, RayAnswers::kAny | RayAnswers::kBatch);
   } else if (group.kind == RayGroupKind::kDirection && coverage.sense(group.shared) == -1) {
     coverage.intersect(origins, group.shared, answers.nearest, rest, {}, threads);
-    tell_all_but(rest, answers, RayAnswers::kNearest);
+    tell_all_but(rest, answers, RayAnswers::kNearest | RayAnswers::kBatch);
   } else if (group.kind == RayGroupKind::kTowards && coverage.has_eye(group.shared)) {
     coverage.occluded_towards(origins, group.shared, answers.any, rest, {}, threads);
-    tell_all_but(rest, answers, RayAnswers::kAny);
+    tell_all_but(rest, answers, RayAnswers::kAny | RayAnswers::kBatch);
   } else if (group.kind == RayGroupKind::kFrom && coverage.has_eye(group.shared)) {
     std::vector<Vec3> directions;
     for (const Ray& ray : group.rays) directions.push_back(ray.direction);
     coverage.intersect_from(group.shared, directions, answers.nearest, rest, {}, threads);
-    tell_all_but(rest, answers, RayAnswers::kNearest);
+    tell_all_but(rest, answers, RayAnswers::kNearest | RayAnswers::kBatch);
   } else {
     answer_one_by_one(coverage, group, answers);
   }

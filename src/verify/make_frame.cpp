@@ -69,7 +69,10 @@ AnswerRays make_frame(const StructureSpec& spec, const VerifyScene& scene) {
       const auto any = spec.counted ? tree.occluded_counted(ray, counters, how) : tree.occluded(ray, how);
       if (hit) answers.nearest[i] = *hit;
       if (any) answers.any[i] = *any;
-      answers.told[i] = static_cast<uint8_t>((hit ? RayAnswers::kNearest : 0) | (any ? RayAnswers::kAny : 0));
+      const FrameUse use = tree.use_of(ray);
+      answers.told[i] = static_cast<uint8_t>((hit ? RayAnswers::kNearest : 0) | (any ? RayAnswers::kAny : 0) |
+                                             (use == FrameUse::kColumn ? RayAnswers::kColumn : 0) |
+                                             (use == FrameUse::kCone ? RayAnswers::kCone : 0));
       answers.until[i] = reach;
     }
   };

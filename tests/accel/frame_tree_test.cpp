@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
+#include <map>
 #include <numeric>
 #include <string>
 
@@ -174,8 +175,15 @@ TEST(FrameTree, ParallelRaysEqualBruteForce) {
   EXPECT_GT(total.cones, total.columns / 8);
 }
 
+/// The field of view of a point area; 0 for others.
+float field_of(const InfluenceArea& area) {
+  const auto* point = std::get_if<PointArea>(&area.shape);
+  return point == nullptr ? 0 : point->fov_x;
+}
+
 TEST(FrameTree, RaysOfAreasEqualBruteForce) {
   Tally total;
+  std::map<float, Tally> wide;  // by field of view
   size_t complete = 0;
   const auto families = test::mesh_families(8);
   const std::vector<Isa> isas = supported_isas();
@@ -201,10 +209,16 @@ TEST(FrameTree, RaysOfAreasEqualBruteForce) {
         EXPECT_EQ(tally.differences, 0u) << families[f].name << ' ' << area.name << ' ' << name(kind) << ' '
                                          << tally.first_difference;
         total.add(tally);
+        if (field_of(area) >= 170) wide[field_of(area)].add(tally);
       }
     }
   }
   report("rays of areas", total);
+  EXPECT_EQ(wide.size(), 3u);
+  for (const auto& [field, tally] : wide) {
+    report("field of " + std::to_string(field), tally);
+    EXPECT_GT(tally.columns, 4u);
+  }
   EXPECT_GT(complete, 100u);
   EXPECT_GT(total.columns, 1000u);
   EXPECT_GT(total.cones, 1000u);

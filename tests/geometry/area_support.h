@@ -45,6 +45,15 @@ inline PointArea random_point_area(Random& random) {
   return area;
 }
 
+/// Makes a point area see nearly half of everything.
+inline void widen(InfluenceArea& area, Random& random) {
+  constexpr float kWide[] = {170, 179, 179.9f};
+  if (auto* point = std::get_if<PointArea>(&area.shape)) {
+    point->fov_x = kWide[random.below(std::size(kWide))];
+    if (random.below(2)) point->fov_y = kWide[random.below(std::size(kWide))];
+  }
+}
+
 inline InfluenceArea random_area(Random& random, bool plane) {
   if (plane) return {"random", random_plane_area(random)};
   return {"random", random_point_area(random)};

@@ -24,7 +24,9 @@ void for_frames(uint64_t seeds, const Check& check) {
   for (uint64_t seed = 1; seed <= test::seed_count(seeds); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const AreaGeometry area(test::random_area(random, seed % 2 == 0));
+    InfluenceArea random_area = test::random_area(random, seed % 2 == 0);
+    if (seed % 4 == 1) test::widen(random_area, random);
+    const AreaGeometry area(random_area);
     for (const FrameKind kind : frame_kinds(area)) {
       SCOPED_TRACE(name(kind));
       check(*area_frame(kind, area), area, random);
@@ -105,7 +107,11 @@ TEST(FrameWeights, ConvergeToTheColumns) {
     ASSERT_LT(column.x + column.y, 1e-6 * column.z);
     Vec3d last{1e30, 1e30, 1e30};
     double last_away = 1e30;
+    const Vec2d half = area.window_half();
+    const double widest = frame.is_projective() ? std::atan(std::hypot(half.x, half.y)) : 0;
     for (const float tolerance : kShrinking) {
+      // Rays that lean out of the frame do not count: a wide window's cones shrink into it first.
+      if (widest + std::acos(1 - static_cast<double>(tolerance)) > 1.569) continue;
       const Vec3d w = frame_area_weights(frame, with_tolerance(area, tolerance));
       const double away = length(w - column);
       ASSERT_LT(w.x, last.x) << tolerance;
@@ -114,7 +120,7 @@ TEST(FrameWeights, ConvergeToTheColumns) {
       ASSERT_GT(away, 0);
       last = w, last_away = away;
     }
-    const Vec2d half = area.window_half();
+    if (last_away == 1e30) return;  // near the window's corners no ray counts
     const double size = frame.is_projective() ? frame.near_z * (1 + half.x * half.x + half.y * half.y)
                                               : frame.norm / determinant(frame);
     ASSERT_LT(last_away, 1e-4 * size);

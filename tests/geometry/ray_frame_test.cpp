@@ -47,7 +47,9 @@ void for_frames(uint64_t seeds, const Check& check) {
   for (uint64_t seed = 1; seed <= test::seed_count(seeds); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
-    const AreaGeometry area(test::random_area(random, seed % 2 == 0));
+    InfluenceArea random_area = test::random_area(random, seed % 2 == 0);
+    if (seed % 4 == 1) test::widen(random_area, random);
+    const AreaGeometry area(random_area);
     for (const FrameKind kind : frame_kinds(area)) {
       SCOPED_TRACE(name(kind));
       check(*area_frame(kind, area), area, random);

@@ -1,5 +1,5 @@
 // Coverage grids on every instruction set against brute force, bit for bit: rays of a sun and of a point, aimed at
-// edges, vertices, silhouettes and the window's border.
+// edges, vertices and silhouettes, and through eyes' wide windows. coverage_border_test.cpp has the borders.
 #include "raygrain/coverage.h"
 
 #include <algorithm>
@@ -13,12 +13,18 @@
 
 #include "base/random.h"
 #include "support/mesh_families.h"
-#include "support/same_bits.h"
+#include "trace/coverage_answers.h"
 
 namespace raygrain {
 namespace {
 
-using test::same_bits;
+using test::expect_flags;
+using test::expect_hits;
+using test::expect_same_singly;
+using test::for_families;
+using test::oracle_flags;
+using test::oracle_hits;
+using test::Tally;
 
 Vec3 unit_vector(Random& random) {
   while (true) {
@@ -73,102 +79,11 @@ std::vector<Vec3> points_around(const TriangleMesh& mesh, Vec3 eye, size_t count
   return points;
 }
 
-/// Answered and hit rays over all tests of a kind: a test that answers nothing proves nothing.
-struct Tally {
-  size_t asked = 0, answered = 0, hits = 0;
-};
-
-/// Which rays were answered: all but `rest`, which is ascending and without doubles.
-std::vector<bool> answered(size_t count, const std::vector<uint32_t>& rest) {
-  std::vector<bool> is_answered(count, true);
-  EXPECT_TRUE(std::ranges::is_sorted(rest));
-  EXPECT_EQ(std::ranges::adjacent_find(rest), rest.end());
-  for (const uint32_t i : rest) is_answered[i] = false;
-  return is_answered;
-}
-
-std::vector<uint8_t> oracle_flags(const TriangleMesh& mesh, const std::vector<Ray>& rays) {
-  std::vector<uint8_t> flags;
-  for (const Ray& ray : rays) flags.push_back(occluded_reference(mesh, ray));
-  return flags;
-}
-std::vector<Hit> oracle_hits(const TriangleMesh& mesh, const std::vector<Ray>& rays) {
-  std::vector<Hit> hits;
-  for (const Ray& ray : rays) hits.push_back(intersect_reference(mesh, ray));
-  return hits;
-}
-
-void expect_flags(const std::vector<uint8_t>& expected, const std::vector<uint8_t>& flags,
-                  const std::vector<uint32_t>& rest, Tally& tally) {
-  const std::vector<bool> is_answered = answered(expected.size(), rest);
-  for (size_t i = 0; i < expected.size(); ++i) {
-    ++tally.asked;
-    if (!is_answered[i]) continue;
-    ++tally.answered;
-    tally.hits += flags[i];
-    ASSERT_EQ(flags[i], expected[i]) << "ray " << i;
-  }
-}
-
-void expect_hits(const std::vector<Hit>& expected, const std::vector<Hit>& hits, const std::vector<uint32_t>& rest,
-                 Tally& tally) {
-  const std::vector<bool> is_answered = answered(expected.size(), rest);
-  for (size_t i = 0; i < expected.size(); ++i) {
-    ++tally.asked;
-    if (!is_answered[i]) continue;
-    ++tally.answered;
-    tally.hits += is_hit(hits[i]);
-    ASSERT_TRUE(same_bits(hits[i], expected[i])) << "ray " << i;
-  }
-}
-
-/// Single rays that are answered get the same answer; most are where the batch answers.
-void expect_same_singly(const Coverage& coverage, const std::vector<Ray>& rays, const std::vector<uint8_t>& flags,
-                        const std::vector<uint32_t>& rest) {
-  const std::vector<bool> is_answered = answered(rays.size(), rest);
-  for (size_t i = 0; i < rays.size(); ++i) {
-    const std::optional<bool> flag = coverage.occluded(rays[i]);
-    if (flag && is_answered[i]) {
-      ASSERT_EQ(*flag, flags[i] != 0) << "ray " << i;
-    }
-  }
-}
-void expect_same_singly(const Coverage& coverage, const std::vector<Ray>& rays, const std::vector<Hit>& hits,
-                        const std::vector<uint32_t>& rest) {
-  const std::vector<bool> is_answered = answered(rays.size(), rest);
-  for (size_t i = 0; i < rays.size(); ++i) {
-    const std::optional<Hit> hit = coverage.intersect(rays[i]);
-    if (hit && is_answered[i]) {
-      ASSERT_TRUE(same_bits(*hit, hits[i])) << "ray " << i;
-    }
-  }
-}
-
 std::vector<Vec3> light_directions(Random& random) {
   const Vec3 any = unit_vector(random);
   Vec3 axis{};
   axis[static_cast<int>(random.below(3))] = random.below(2) == 0 ? 1.0f : -1.0f;
   return {axis, any, {any.x, 1e-4f * any.y, any.z * 1e-7f}};
-}
-
-/// Scenes of up to 2^60: around greater ones there is no finite area.
-bool has_areas(const TriangleMesh& mesh) {
-  const Bounds box = mesh_bounds(mesh);
-  for (const Vec3 p : {box.lo, box.hi})
-    for (int axis = 0; axis < 3; ++axis)
-      if (!(std::abs(p[axis]) < 0x1p60f)) return false;
-  return true;
-}
-
-template <class Body>
-void for_families(uint64_t seeds, const Body& body) {
-  for (uint64_t seed = 0; seed < test::seed_count(seeds); ++seed)
-    for (const test::NamedMesh& family : test::mesh_families(seed)) {
-      if (family.mesh.triangles.empty() || !has_areas(family.mesh)) continue;
-      SCOPED_TRACE(family.name + ", seed " + std::to_string(seed));
-      body(std::make_shared<const TriangleMesh>(family.mesh), seed);
-      if (testing::Test::HasFatalFailure()) return;
-    }
 }
 
 CoverageOptions some_options(uint64_t seed, Isa isa, Random& random) {
@@ -229,8 +144,16 @@ TEST(Coverage, LeavesManyLayersOfLargeTrianglesUncovered) {
   EXPECT_FALSE(coverage.occluded(Ray{{0.5f, 0.5f, 0.5f}, -light}));
 }
 
+/// An eye that sees nearly half of everything.
+InfluenceArea wide_area(Vec3 eye, Vec3 forward, float fov, double reach) {
+  return {
+      "wide " + std::to_string(fov),
+      PointArea{eye, forward, {0, 1, 0}, fov, fov, static_cast<float>(1e-3 * reach), static_cast<float>(3 * reach)}};
+}
+
 TEST(Coverage, AgreesWithTheOracleAboutAPoint) {
-  Tally any, nearest;
+  Tally any, nearest, wide;
+  size_t eye_number = 0;
   for_families(2, [&](const std::shared_ptr<const TriangleMesh>& mesh, uint64_t seed) {
     Random random(seed + 200);
     const Bounds box = mesh_bounds(*mesh);
@@ -253,7 +176,11 @@ TEST(Coverage, AgreesWithTheOracleAboutAPoint) {
       }
       const std::vector<uint8_t> expected_flags = oracle_flags(*mesh, towards);
       const std::vector<Hit> expected_hits = oracle_hits(*mesh, from);
-      for (const InfluenceArea& area : point_light_areas("lamp", eye, box))
+      std::vector<InfluenceArea> areas = point_light_areas("lamp", eye, box);
+      constexpr float kWideFields[] = {170, 179, 179.9f};
+      const Vec3d forward = middle - to_double(eye) + to_double(unit_vector(random)) * (0.1 * reach);
+      if (reach > 0) areas.push_back(wide_area(eye, to_float(forward), kWideFields[eye_number++ % 3], reach));
+      for (const InfluenceArea& area : areas)
         for (const Isa isa : supported_isas()) {
           SCOPED_TRACE(area.name + ", " + name(isa));
           const Coverage coverage(mesh, area, some_options(seed, isa, random));
@@ -265,7 +192,7 @@ TEST(Coverage, AgreesWithTheOracleAboutAPoint) {
           rest.clear();
           std::vector<Hit> hits(points.size());
           coverage.intersect_from(eye, directions, hits, rest);
-          expect_hits(expected_hits, hits, rest, nearest);
+          expect_hits(expected_hits, hits, rest, area.name.starts_with("wide") ? wide : nearest);
           expect_same_singly(coverage, from, hits, rest);
           if (testing::Test::HasFatalFailure()) return;
         }
@@ -275,6 +202,8 @@ TEST(Coverage, AgreesWithTheOracleAboutAPoint) {
   EXPECT_GT(any.hits, any.answered / 8);
   EXPECT_GT(nearest.answered, nearest.asked / 12);
   EXPECT_GT(nearest.hits, nearest.answered / 3);
+  EXPECT_GT(wide.answered, wide.asked / 8);
+  EXPECT_GT(wide.hits, wide.answered / 8);
 }
 
 }  // namespace
