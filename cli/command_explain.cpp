@@ -117,15 +117,16 @@ std::string times_table(const Explanation& explanation) {
   std::ranges::stable_sort(lines, {}, [](const Line& line) { return line.times->break_even_rays; });
   std::string text = fmt::format("{:<{}}  {:<24} {:>11} {:>9} {:>9} {:>9} {:>9}\n", "area", width, "question",
                                  "pays after", "ns a ray", "global", "coverage", "its tree");
-  for (const auto& [area, times] : lines) {
+  for (const Line& line : lines) {
+    const AreaTimes& times = *line.times;
     const auto percent = [&](uint64_t part) {
-      return fmt::format("{:.1f} %", 100 * static_cast<double>(part) / static_cast<double>(times->rays));
+      return fmt::format("{:.1f} %", 100 * static_cast<double>(part) / static_cast<double>(times.rays));
     };
-    const double pays = times->break_even_rays;
-    text +=
-        fmt::format("{:<{}}  {:<24} {:>11} {:>9.1f} {:>9.1f} {:>9} {:>9}\n", area->name, width, name(times->question),
-                    std::isinf(pays) ? "never" : fmt::format("{:.0f}", std::ceil(pays)), times->area_nanoseconds,
-                    times->global_nanoseconds, percent(times->use.covered), percent(times->use.local));
+    const double pays = times.break_even_rays;
+    text += fmt::format("{:<{}}  {:<24} {:>11} {:>9.1f} {:>9.1f} {:>9} {:>9}\n", line.area->name, width,
+                        name(times.question), std::isinf(pays) ? "never" : fmt::format("{:.0f}", std::ceil(pays)),
+                        times.area_nanoseconds, times.global_nanoseconds, percent(times.use.covered),
+                        percent(times.use.local));
   }
   return text;
 }
