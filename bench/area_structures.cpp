@@ -29,11 +29,12 @@ void build_timed(BuildCost& cost, unsigned threads, const Build& build) {
   cost.seconds = std::min(cost.seconds, watch.seconds());
 }
 
-/// For measures of rays near an area's direction; rays along it need none.
-std::vector<Ray> samples_of(const StructuredRays& rays) {
-  if (rays.sharing != Sharing::kNothing) return {};
-  const std::vector<Ray>& all = rays.set.rays;
-  return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(std::min<size_t>(1000, all.size()))};
+/// What the trees are for: rays that share a direction or a point run exactly along their area.
+std::vector<InfluenceArea> areas_of(const StructuredRays& rays) {
+  std::vector<InfluenceArea> areas = rays.areas;
+  if (rays.sharing != Sharing::kNothing)
+    for (InfluenceArea& area : areas) area.tolerance = 0;
+  return areas;
 }
 
 /// any(ray) and nearest(ray) answer one ray.
@@ -112,7 +113,7 @@ void SceneStructures::build_again() {
 }
 
 AreaStructures::AreaStructures(const SceneStructures& scene, const StructuredRays& rays, unsigned threads)
-    : scene_(scene), areas_(rays.areas), samples_(samples_of(rays)), threads_(threads) {
+    : scene_(scene), areas_(areas_of(rays)), threads_(threads) {
   if (rays.sharing == Sharing::kNothing) return;
   // A tile is one cell where it is not asked for more: a flat grid.
   constexpr float kNoMore = 1e-6f;
@@ -168,7 +169,7 @@ void AreaStructures::build_frames() {
     bytes = corners->memory_bytes();
     for (const InfluenceArea& area : areas_) {
       const std::vector<uint32_t> triangles = area_members(*scene_.mesh, AreaGeometry(area));
-      trees_.frames.push_back(build_area_frame_tree(area, corners, triangles, samples_, options));
+      trees_.frames.push_back(build_area_frame_tree(area, corners, triangles, {}, options));
     }
   });
   for (const std::optional<FrameTree>& tree : trees_.frames) bytes += tree ? tree->memory_bytes() : 0;

@@ -78,7 +78,6 @@ class AreaStructures {
 
   const SceneStructures& scene_;
   const std::vector<InfluenceArea> areas_;
-  const std::vector<Ray> samples_;
   const unsigned threads_;
   std::vector<GridOfCells> grids_;  // the library's own first; none where rays do not run along their area
   Trees trees_;
