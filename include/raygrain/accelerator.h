@@ -197,7 +197,8 @@ class Accelerator {
   /// Is there any hit in [tmin, tmax]?
   bool occluded(const Ray& ray, AcceleratorCounters* counters = nullptr) const;
 
-  /// Many rays of any kind, answered as one by one; `hits` and `flags` (1 = occluded) have the size of `rays`, or Error
+  /// Many rays of any kind, answered as one by one; those that a call below could have are answered as fast as there,
+  /// or nearly, where there are enough of them; `hits` and `flags` (1 = occluded) have the size of `rays`, or Error
   /// (kUsage). 0 threads = all.
   void intersect(std::span<const Ray> rays, std::span<Hit> hits, unsigned threads = 1,
                  AcceleratorCounters* counters = nullptr) const;

@@ -134,8 +134,8 @@ void Accelerator::Parts::choose_routes(bool by_cost, const SampleSource& samples
       nearest(ray, route, &counters);
   };
   if (by_cost) costs = predict_costs({*mesh, geometries, coverages, !locals.empty(), trace}, samples);
-  many_share = share_of_many(isa, global.wide_bytes());
-  routes = raygrain::choose_routes(geometries, coverages, !locals.empty(), costs, many_share);
+  many_shares = shares_of_many(isa, global.wide_bytes());
+  routes = raygrain::choose_routes(geometries, coverages, !locals.empty(), costs, many_shares);
   for (size_t i = 0; i < locals.size(); ++i) {
     const auto searched = [i](const Route& route) { return route.searches[i] != 0; };
     if (searched(routes.any) || searched(routes.nearest) || searched(routes.any_of_many) ||

@@ -1,18 +1,13 @@
-// How an accelerator answers: one ray along its route, and arrays of rays.
+// How an accelerator answers one ray, along its route.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <mutex>
 #include <optional>
-#include <vector>
 
 #include "raygrain/accelerator.h"
 
 #include "accel/accelerator_parts.h"
 #include "accel/own_rays.h"
 #include "accel/search.h"
-#include "base/parallel.h"
-#include "base/sizes.h"
 
 namespace raygrain {
 
@@ -23,22 +18,6 @@ TraceCounters* local_counters(AcceleratorCounters* counters) {
 }
 TraceCounters* global_counters(AcceleratorCounters* counters) {
   return counters != nullptr ? &counters->global : nullptr;
-}
-
-constexpr size_t kChunk = 1024;
-
-/// answer(begin, end, counters) for each chunk of rays; counters of chunks are summed.
-template <class Answer>
-void for_chunks(size_t rays, unsigned threads, AcceleratorCounters* counters, const Answer& answer) {
-  std::mutex mutex;
-  parallel_for(rays, kChunk, threads, [&](size_t begin, size_t end) {
-    if (counters == nullptr) return answer(begin, end, nullptr);
-    AcceleratorCounters own;
-    own.areas.resize(counters->areas.size());
-    answer(begin, end, &own);
-    const std::lock_guard lock(mutex);
-    counters->add(own);
-  });
 }
 
 void count_covered(uint32_t area, AcceleratorCounters* counters) {
@@ -145,106 +124,34 @@ bool Accelerator::Parts::any(const Ray& ray, const Route& route, AcceleratorCoun
   return global.occluded(ray, options, global_counters(counters));
 }
 
-Hit Accelerator::intersect(const Ray& ray, AcceleratorCounters* counters) const {
-  const Route& route = parts_->routes.nearest;
+template <>
+Hit Accelerator::Parts::answer_one<Hit>(const Ray& ray, AcceleratorCounters* counters) const {
+  const Route& route = routes.nearest;
   if (counters == nullptr) {
-    if (route.foreign.is_foreign(ray)) return parts_->global.intersect(ray, {}, {}, nullptr);
+    if (route.foreign.is_foreign(ray)) return global.intersect(ray, {}, {}, nullptr);
     if (const auto hit = nearest_covered(route, ray, nullptr)) return *hit;
   }
-  parts_->count_areas(counters);
-  return parts_->nearest(ray, route, counters);
+  count_areas(counters);
+  return nearest(ray, route, counters);
+}
+
+template <>
+uint8_t Accelerator::Parts::answer_one<uint8_t>(const Ray& ray, AcceleratorCounters* counters) const {
+  const Route& route = routes.any;
+  if (counters == nullptr) {
+    if (route.foreign.is_foreign(ray)) return global.occluded(ray, {}, nullptr) ? 1 : 0;
+    if (const auto hit = any_covered(route, ray, nullptr)) return *hit ? 1 : 0;
+  }
+  count_areas(counters);
+  return any(ray, route, counters) ? 1 : 0;
+}
+
+Hit Accelerator::intersect(const Ray& ray, AcceleratorCounters* counters) const {
+  return parts_->answer_one<Hit>(ray, counters);
 }
 
 bool Accelerator::occluded(const Ray& ray, AcceleratorCounters* counters) const {
-  const Route& route = parts_->routes.any;
-  if (counters == nullptr) {
-    if (route.foreign.is_foreign(ray)) return parts_->global.occluded(ray, {}, nullptr);
-    if (const auto hit = any_covered(route, ray, nullptr)) return *hit;
-  }
-  parts_->count_areas(counters);
-  return parts_->any(ray, route, counters);
-}
-
-namespace {
-
-/// Of a chunk, rays that are no area's go to the global tree together (many), the others one by one.
-template <class Answer, class One, class Many>
-void answer_chunk(const ForeignFilter& foreign, std::span<const Ray> part, std::span<Answer> room, const One& one,
-                  const Many& many) {
-  constexpr size_t kProbe = 31;
-  constexpr size_t kFew = kChunk / 16;  // so few others are not worth a selection
-  bool is_mixed = false;
-  for (size_t i = 0; i < part.size(); i += kProbe) is_mixed |= !foreign.is_foreign(part[i]);
-  if (!is_mixed) return many(part, room);
-  std::array<uint32_t, kChunk> numbers;
-  size_t foreigners = 0;
-  for (size_t i = 0; i < part.size(); ++i) {
-    numbers[foreigners] = static_cast<uint32_t>(i);
-    foreigners += foreign.is_foreign(part[i]) ? 1 : 0;
-  }
-  if (part.size() - foreigners <= std::min(kFew, part.size() / 16)) return many(part, room);
-  std::vector<Ray> gathered;
-  gathered.reserve(foreigners);
-  size_t next = 0;
-  for (size_t i = 0; i < part.size(); ++i) {
-    if (next < foreigners && numbers[next] == i) {
-      gathered.push_back(part[i]);
-      ++next;
-    } else {
-      room[i] = one(part[i]);
-    }
-  }
-  std::vector<Answer> found(foreigners);
-  many(gathered, found);
-  for (size_t i = 0; i < foreigners; ++i) room[numbers[i]] = found[i];
-}
-
-}  // namespace
-
-void Accelerator::intersect(std::span<const Ray> rays, std::span<Hit> hits, unsigned threads,
-                            AcceleratorCounters* counters) const {
-  check_sizes("Accelerator", rays.size(), hits.size());
-  const std::optional<WideBvh>& global = parts_->global.wide();
-  const Route& route = parts_->routes.nearest_of_many;
-  if (global && counters == nullptr && route.foreign.is_trivial()) return global->intersect(rays, hits, threads);
-  parts_->count_areas(counters);
-  for_chunks(rays.size(), threads, counters, [&](size_t begin, size_t end, AcceleratorCounters* count) {
-    const auto one_by_one = [&](std::span<const Ray> some, std::span<Hit> found, const Route& way) {
-      for (size_t i = 0; i < some.size(); ++i) found[i] = parts_->nearest(some[i], way, count);
-    };
-    const auto part = rays.subspan(begin, end - begin);
-    const auto room = hits.subspan(begin, end - begin);
-    if (!global) return one_by_one(part, room, route);
-    answer_chunk(
-        route.foreign, part, room, [&](const Ray& ray) { return parts_->nearest(ray, route, count); },
-        [&](std::span<const Ray> some, std::span<Hit> found) {
-          if (count != nullptr) return one_by_one(some, found, {});
-          global->intersect(some, found);
-        });
-  });
-}
-
-void Accelerator::occluded(std::span<const Ray> rays, std::span<uint8_t> flags, unsigned threads,
-                           AcceleratorCounters* counters) const {
-  check_sizes("Accelerator", rays.size(), flags.size());
-  const std::optional<WideBvh>& global = parts_->global.wide();
-  const Route& route = parts_->routes.any_of_many;
-  if (global && counters == nullptr && route.foreign.is_trivial()) return global->occluded(rays, flags, threads);
-  parts_->count_areas(counters);
-  for_chunks(rays.size(), threads, counters, [&](size_t begin, size_t end, AcceleratorCounters* count) {
-    const auto one_by_one = [&](std::span<const Ray> some, std::span<uint8_t> found, const Route& way) {
-      for (size_t i = 0; i < some.size(); ++i) found[i] = parts_->any(some[i], way, count) ? 1 : 0;
-    };
-    const auto part = rays.subspan(begin, end - begin);
-    const auto room = flags.subspan(begin, end - begin);
-    if (!global) return one_by_one(part, room, route);
-    answer_chunk(
-        route.foreign, part, room, [&](const Ray& ray) { return static_cast<uint8_t>(parts_->any(ray, route, count)); },
-        [&](std::span<const Ray> some, std::span<uint8_t> found) {
-          if (count != nullptr) return one_by_one(some, found, {});
-          global->occluded(some, found);
-        });
-  });
+  return parts_->answer_one<uint8_t>(ray, counters) != 0;
 }
 
 }  // namespace raygrain

@@ -13,7 +13,8 @@ size_t bytes_of(const std::vector<T>& values) {
 }
 
 size_t bytes_of(const Route& route) {
-  return route.asked.memory_bytes() + bytes_of(route.covers) + bytes_of(route.searches) + route.foreign.memory_bytes();
+  return route.asked.memory_bytes() + route.batches.memory_bytes() + bytes_of(route.covers) + bytes_of(route.searches) +
+         route.foreign.memory_bytes();
 }
 
 /// Bytes that nothing before has counted.

@@ -32,7 +32,7 @@ struct Accelerator::Parts {
   std::vector<Coverage> coverages = {};       // parallel to them, or empty
   std::vector<AreaCosts> costs = {};          // ... likewise
   Routes routes = {};
-  double many_share = 1;  // of what the global tree's costs are, for a ray of many
+  ManyShares many_shares = {};
 
   /// Chooses the routes: by cost, or whatever there is.
   void choose_routes(bool by_cost, const SampleSource& samples, Isa isa);
@@ -50,6 +50,44 @@ struct Accelerator::Parts {
 
   Hit nearest(const Ray& ray, const Route& route, AcceleratorCounters* counters) const;
   bool any(const Ray& ray, const Route& route, AcceleratorCounters* counters) const;
+
+  // Any hits (flags) or nearest ones. Answers: uint8_t or Hit.
+  template <class Answer>
+  const Route& route_of_one() const {
+    return kIsAny<Answer> ? routes.any : routes.nearest;
+  }
+  template <class Answer>
+  const Route& route_of_many() const {
+    return kIsAny<Answer> ? routes.any_of_many : routes.nearest_of_many;
+  }
+  template <class Answer>
+  Answer answer_one(const Ray& ray, AcceleratorCounters* counters) const;
+  /// Ray by ray.
+  template <class Answer>
+  void answer_along(const Route& route, std::span<const Ray> rays, std::span<Answer> answers,
+                    AcceleratorCounters* counters) const;
+  /// Rays that concern no area. Counted, they go one by one.
+  template <class Answer>
+  void answer_by_global(std::span<const Ray> rays, std::span<Answer> answers, AcceleratorCounters* counters) const;
+  /// Rays that coverage has left.
+  template <class Answer>
+  void answer_by_trees(std::span<const Ray> rays, std::span<Answer> answers, AcceleratorCounters* counters) const;
+  template <class Answer>
+  void answer_gathered(std::span<const Ray> rays, std::span<const uint32_t> numbers, std::span<Answer> answers,
+                       AcceleratorCounters* counters) const;
+  template <class Answer>
+  void answer_chunk(std::span<const Ray> rays, std::span<Answer> answers, AcceleratorCounters* counters) const;
+  template <class Answer>
+  void answer_array(std::span<const Ray> rays, std::span<Answer> answers, unsigned threads,
+                    AcceleratorCounters* counters) const;
+  template <class Answer>
+  void answer_batch(const Shared& shared, std::span<const Vec3> points, std::span<Answer> answers, unsigned threads,
+                    AcceleratorCounters* counters) const;
 };
+
+template <>
+Hit Accelerator::Parts::answer_one<Hit>(const Ray& ray, AcceleratorCounters* counters) const;
+template <>
+uint8_t Accelerator::Parts::answer_one<uint8_t>(const Ray& ray, AcceleratorCounters* counters) const;
 
 }  // namespace raygrain

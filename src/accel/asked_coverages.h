@@ -45,6 +45,7 @@ class AskedCoverages {
   }
 
   /// Of the lists; coverages are counted where they are kept.
+  bool is_empty() const { return alone_.empty() && lamps_.empty(); }
   size_t memory_bytes() const;
 
   /// Of a cube around the origin, the face that the direction points at: 2 * axis, + 1 where that is negative.

@@ -57,11 +57,12 @@ std::string route_text(const char* kind, const Route& route, std::span<const Are
 }
 
 /// A line for each kind of question.
-std::string routes_text(const Routes& routes, std::span<const AreaCosts> costs, double many, size_t area) {
+std::string routes_text(const Routes& routes, std::span<const AreaCosts> costs, ManyShares many, size_t area) {
   return route_text("any hit", routes.any, costs, &AreaCosts::any, 1, area) + "\n" +
          route_text("closest hit", routes.nearest, costs, &AreaCosts::nearest, 1, area) + "\n" +
-         route_text("any hit in arrays", routes.any_of_many, costs, &AreaCosts::any, many, area) + "\n" +
-         route_text("closest hit in arrays", routes.nearest_of_many, costs, &AreaCosts::nearest, many, area) + "\n";
+         route_text("any hit in arrays", routes.any_of_many, costs, &AreaCosts::any, many.any, area) + "\n" +
+         route_text("closest hit in arrays", routes.nearest_of_many, costs, &AreaCosts::nearest, many.nearest, area) +
+         "\n";
 }
 
 /// An accelerator and its global tree alone, asked about one area.
@@ -134,7 +135,7 @@ AreaReport Accelerator::Parts::describe(size_t area) const {
     report.build_seconds = coverages[area].build_seconds();
   }
   if (area < locals.size()) describe_local(area, report);
-  report.routes = routes_text(routes, costs, many_share, area);
+  report.routes = routes_text(routes, costs, many_shares, area);
   return report;
 }
 

@@ -146,10 +146,11 @@ class Pricing {
 
 }  // namespace
 
-double share_of_many(Isa isa, size_t bytes) {
-  if (isa != Isa::kAvx512) return 1;  // without its vectors rays are searched one after the other
-  // Measured: 0.6 with trees of 8 MB, 0.37 with 70 MB, where a ray alone waits for memory.
-  return std::max(0.3, 0.7 - 0.1 * octaves(static_cast<double>(bytes) * 0x1p-23));
+ManyShares shares_of_many(Isa isa, size_t bytes) {
+  if (isa != Isa::kAvx512 && isa != Isa::kAvx2) return {};  // rays are searched one after the other
+  // Measured (docs/performance-rays.md, "A ray of many"): the larger the tree, the longer a ray alone waits for memory.
+  const double any = std::max(0.3, 0.67 - 0.045 * octaves(static_cast<double>(bytes) * 0x1p-20));
+  return {any, any + 0.1};
 }
 
 std::vector<AreaCosts> predict_costs(const PricedParts& parts, const SampleSource& source) {

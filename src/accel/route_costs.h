@@ -24,7 +24,7 @@ struct PricedParts {
 /// from where its rays start for the nearest.
 std::vector<AreaCosts> predict_costs(const PricedParts& parts, const SampleSource& source);
 
-/// A ray of many costs a tree of so many bytes this share of what it costs alone.
-double share_of_many(Isa isa, size_t bytes);
+/// What a ray of many costs a tree of so many bytes.
+ManyShares shares_of_many(Isa isa, size_t bytes);
 
 }  // namespace raygrain

@@ -10,14 +10,16 @@
 #include "raygrain/coverage.h"
 
 #include "accel/asked_coverages.h"
+#include "accel/batch_coverages.h"
 #include "accel/foreign.h"
 
 namespace raygrain {
 
 /// Of one kind of question.
 struct Route {
-  AskedCoverages asked;           // nothing of invalid rays
-  std::vector<uint8_t> covers;    // by area: its coverage is among them
+  AskedCoverages asked;           // about rays one by one; nothing of invalid rays
+  BatchCoverages batches;         // about many rays with something in common
+  std::vector<uint8_t> covers;    // by area: its coverage is among these
   std::vector<uint8_t> searches;  // by area: its local tree is searched
   bool searches_some = false;
   ForeignFilter foreign;  // rays that none of these concerns
@@ -39,9 +41,13 @@ struct AreaCosts {
   WayCosts any, nearest;
 };
 
-/// The cheapest ways. Without costs every structure that is there is used. `many`: what share of the global tree's
-/// costs a ray of many has.
+/// What shares of the global tree's costs a ray of an array has.
+struct ManyShares {
+  double any = 1, nearest = 1;
+};
+
+/// The cheapest ways. Without costs every structure that is there is used.
 Routes choose_routes(std::span<const AreaGeometry> areas, std::span<const Coverage> coverages, bool has_locals,
-                     std::span<const AreaCosts> costs, double many);
+                     std::span<const AreaCosts> costs, ManyShares many);
 
 }  // namespace raygrain
