@@ -95,7 +95,7 @@ int analyze_tree(const Options& options) {
   output.save_json(
       rows_json(scene.name, scene.mesh.triangle_count(), options.tree.seed, options.tree.common, {&row, 1}));
   output.print(fmt::format("{}, {}{}\n{}", scene.name, row.name, row.area.empty() ? "" : " for " + row.area,
-                           row_listing(row) + tree.peak_line()));
+                           row_listing(row) + tree.peak_line() + tree.sample_line()));
   if (!options.nodes.empty()) output.note("Written:\n  " + options.nodes + "\n");
   return kSuccess;
 }

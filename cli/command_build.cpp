@@ -38,7 +38,7 @@ int build(const Options& options) {
   progress.erase();
   output.save_json(json);
   output.print(fmt::format("{}, {}{}\n{}", scene.name, row.name, row.area.empty() ? "" : " for " + row.area,
-                           row_listing(row) + tree.peak_line()));
+                           row_listing(row) + tree.peak_line() + tree.sample_line()));
   output.note("Written:\n  " + options.output + "\n");
   return kSuccess;
 }

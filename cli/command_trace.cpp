@@ -38,7 +38,8 @@ struct Options {
   std::string scene, output;
   std::string local = "PAH+ALL@binned", global = kDefaultGlobal;
   std::string quality, tree, traversal = "wide";
-  bool verify = false, reinsert = false;
+  std::string wide_measure;
+  bool verify = false, reinsert = false, reinsert_local = false;
 };
 
 struct Traced {
@@ -59,6 +60,9 @@ AcceleratorOptions accelerator_options(const Options& options) {
     result.quality = parse_quality(options.quality);
   }
   result.reinsert = options.reinsert;
+  result.reinsert_local = options.reinsert_local;
+  result.wide_measure = options.wide_measure;
+  if (!options.wide_measure.empty()) parse_recipe(options.wide_measure + "+ALL", result.registry);  // is it known?
   if (options.traversal != "wide" && options.traversal != "binary")
     fail_usage("--traversal", "unknown form '" + options.traversal + "'", "Known: wide, binary");
   result.traversal = options.traversal == "wide" ? Traversal::kWide : Traversal::kBinary;
@@ -159,6 +163,8 @@ void check_options(const Options& options) {
   if (!options.tree.empty() && (!options.quality.empty() || options.reinsert || options.global != kDefaultGlobal))
     fail_usage("--tree", "cannot be combined with --global, --quality or --reinsert",
                "They say how a new tree is built");
+  if (!options.tree.empty() && (options.reinsert_local || !options.wide_measure.empty()))
+    fail_usage("--tree", "cannot be combined with --reinsert-local or --wide-measure", "Leave one of them out");
   check_ray_options(options.rays);
   if (!options.rays.is_given()) fail_usage("--rays", "no rays are given", kRaysHint);
 }
@@ -170,9 +176,11 @@ Accelerator make_accelerator(const Options& options, const Scene& scene, const s
   auto global = std::make_shared<const Bvh>(load_tree_for(scene.mesh, options.tree));
   std::vector<LocalTree> locals;
   locals.reserve(areas.size());
-  for (const InfluenceArea& area : areas)
-    locals.push_back(
-        build_local_tree(scene.mesh, area, build.local, build.registry, {}, build.samples(&area), {build.threads, {}}));
+  for (const InfluenceArea& area : areas) {
+    const std::vector<Ray> samples =
+        samples_for(build.local, build.registry, build.samples(&area), scene.mesh, global.get(), build.threads);
+    locals.push_back(build_local_tree(scene.mesh, area, build.local, build.registry, {}, samples, {build.threads, {}}));
+  }
   return Accelerator(std::make_shared<const TriangleMesh>(scene.mesh), std::move(locals), std::move(global),
                      build.top_level, build.traversal);
 }
@@ -234,6 +242,9 @@ Action declare_trace(Arguments& arguments) {
   arguments.text("--quality", "NAME", options->quality,
                  "Of that tree: fast, balanced or best, in place of its builder");
   arguments.flag("--reinsert", options->reinsert, "Improve that tree by reinsertion, under its measure");
+  arguments.flag("--reinsert-local", options->reinsert_local, "Improve the areas' trees, likewise");
+  arguments.text("--wide-measure", "NAME", options->wide_measure,
+                 "What makes the wide forms of the areas' trees, e.g. VISIBLE [their recipe's]");
   arguments.file("--tree", "FILE.rgt", options->tree, "A built tree of the whole scene in place of that tree");
   arguments.text("--traversal", "NAME", options->traversal, "Form of the trees: wide, or binary (slower) [wide]");
   arguments.flag("--verify", options->verify, "Check every hit against brute force (slow)");

@@ -70,7 +70,8 @@ ViewTree make_tree(const Scene& scene, size_t area, const Recipe& recipe, const 
   result.area = area;
   const InfluenceArea* where = area == kWholeScene ? nullptr : &scene.areas[area];
   std::vector<Ray> samples;
-  if (where && needs_samples(recipe, registry)) samples = sample_rays(*where, options.seed);
+  if (where && needs_samples(recipe, registry))
+    samples = samples_for(recipe, registry, sample_rays(*where, options.seed), scene.mesh, nullptr, run.threads);
   if (where) {
     LocalTree local = build_local_tree(scene.mesh, *where, recipe, registry, {}, samples, run);
     result.tree = local.tree;

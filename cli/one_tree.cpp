@@ -100,6 +100,12 @@ std::string OneTree::peak_line() const {
                      "build_peak_memory", static_cast<double>(log.peak_bytes) / (1024 * 1024));
 }
 
+std::string OneTree::sample_line() const {
+  const bool has_ends = std::ranges::any_of(samples, [](const Ray& ray) { return ray.tmax < kInf; });
+  if (!needs_hits(recipe, registry) || has_ends) return "";
+  return fmt::format("  No sample ray hits anything: {} hides nothing here.\n", recipe.measure);
+}
+
 Recipe check_tree_options(const TreeOptions& options, const Registry& registry) {
   check_area_options(options.areas);
   if (options.whole && !options.area.empty())
@@ -121,7 +127,9 @@ OneTree build_one_tree(const TreeOptions& options, const Scene& scene, const std
   result.recipe = check_tree_options(options, result.registry);
   const bool samples = needs_samples(result.recipe, result.registry);
   result.area = pick_area(options, scene, areas, samples || needs_area(result.recipe, result.registry));
-  if (samples) result.samples = sample_rays(*result.area, options.seed);
+  if (samples)
+    result.samples = samples_for(result.recipe, result.registry, sample_rays(*result.area, options.seed), scene.mesh,
+                                 nullptr, options.common.thread_count());
 
   if (!options.file.empty()) {
     load_one_tree(result, scene.mesh, options.file);

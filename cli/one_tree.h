@@ -43,6 +43,8 @@ struct OneTree {
   ReportRow row() const;
   /// The memory that the build took, as a line of text; empty where the builder does not say.
   std::string peak_line() const;
+  /// A line of text where the recipe asks what its sample rays hit and none hits anything; else empty.
+  std::string sample_line() const;
 };
 
 /// Checks what can be checked before the scene is loaded.

@@ -25,8 +25,8 @@ namespace raygrain {
 /// wrong: a rule for experiments, not for use.
 using MembershipRule = std::function<bool(const AreaGeometry&, Vec3 a, Vec3 b, Vec3 c)>;
 
-/// Sample rays for recipes whose measure needs them (SAMPLED), of an area or, for a null area, of the global tree. May
-/// be called from several threads.
+/// Sample rays for recipes whose measure needs them (SAMPLED, VISIBLE), of an area or, for a null area, of the global
+/// tree; they need not know their hits. May be called from several threads.
 using SampleSource = std::function<std::vector<Ray>(const InfluenceArea* area)>;
 
 /// The form of the trees that rays are sent through. Answers are the same.
@@ -53,6 +53,10 @@ struct AcceleratorOptions {
   Recipe global{"SAH", "ALL", "binned", {}, true};  // of the tree that answers all other rays
   std::optional<Quality> quality;                   // of the global tree: replaces its recipe's builder
   bool reinsert = false;                            // improve the global tree by reinsertion, under its own measure
+  bool reinsert_local = false;                      // ... and each area's tree, likewise
+  /// Name of the measure that the wide forms of the areas' trees are made by: which nodes become children of one node,
+  /// and in which order any hit asks them. Empty: the local recipe's.
+  std::string wide_measure = {};
   Traversal traversal = Traversal::kWide;
   LocalSpace space = LocalSpace::kWorld;
   Routing routing = Routing::kCheapest;  // under Traversal::kBinary always kAreas
@@ -77,7 +81,7 @@ struct LocalTree {
   std::shared_ptr<const Bvh> tree;
   BuildLog log;
   double predicted_cost = 0;
-  RayMeasure measure = {};                               // the tree's own; decides how its wide form is collapsed
+  RayMeasure measure = {};  // the tree's own, or AcceleratorOptions::wide_measure; decides how its wide form is made
   std::optional<FrameTree> in_ray_space = std::nullopt;  // LocalSpace::kRay, where some ray is sent there
   double build_seconds = 0;
 };
@@ -250,12 +254,19 @@ class Accelerator {
 std::vector<uint32_t> area_members(const TriangleMesh& mesh, const AreaGeometry& geometry,
                                    const MembershipRule& rule = {});
 
-/// Builds one area's local tree over the triangles that overlap its region; `prims` are triangle ids of `mesh`.
+/// The sample rays that a recipe is made from: as given, but for a measure that is about first hits (VISIBLE) each
+/// ended at its own, among all triangles. `tree` is any tree over them; without one a quick one is built. Rays of which
+/// some end already are left as they are.
+std::vector<Ray> samples_for(const Recipe& recipe, const Registry& registry, std::span<const Ray> samples,
+                             const TriangleMesh& mesh, const Bvh* tree = nullptr, unsigned threads = 0);
+
+/// Builds one area's local tree over the triangles that overlap its region; `prims` are triangle ids of `mesh`. The
+/// samples go through samples_for.
 LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, const Recipe& recipe,
                            const Registry& registry, const MembershipRule& membership = {},
                            std::span<const Ray> samples = {}, const BuildRun& run = {});
 
-/// Builds the recipe's tree over all triangles.
+/// Builds the recipe's tree over all triangles. The samples go through samples_for.
 Bvh build_global_tree(const TriangleMesh& mesh, const Recipe& recipe, const Registry& registry, BuildLog* log = nullptr,
                       std::span<const Ray> samples = {}, const BuildRun& run = {});
 

@@ -54,9 +54,9 @@ std::vector<Recipe> paper_recipes();
 /// `verify`). Throws Error (kUsage) for a scene without areas.
 Comparison compare(const Scene& scene, const CompareOptions& options);
 
-/// The 1000 rays of an area that recipes with samples (SAMPLED) are given: others than cast_rays gives for this seed,
-/// so that no tree is measured with the rays that it was built for.
-std::vector<Ray> sample_rays(const InfluenceArea& area, uint64_t seed);
+/// The rays of an area that recipes with samples (SAMPLED, VISIBLE) are given: others than cast_rays gives for this
+/// seed, so that no tree is measured with the rays that it was built for. samples_for ends them where that is needed.
+std::vector<Ray> sample_rays(const InfluenceArea& area, uint64_t seed, size_t count = 4096);
 
 /// Index into `rows` of the best recipe of an area by pruned cost, then real cost, then order; the row `except` does
 /// not compete. Throws Error (kNotFound) where there is none.

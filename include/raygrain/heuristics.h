@@ -24,9 +24,11 @@ RayMeasure projected_area_measure(const InfluenceArea& area, Culling culling = C
 /// Counts the sample rays that meet a box (as infinite lines cut to [tmin, tmax]); total = their number.
 RayMeasure sampled_measure(std::span<const Ray> rays);
 
-/// `base`, weighted by the share of sample rays that are still alive at a box: rays stop at their first hit, so what
-/// opaque surfaces hide costs little. After Vinkler, Havran and Sochor, "Visibility driven BVH build up algorithm for
-/// ray tracing" (2012). `rays` end (tmax) where they hit; a few thousand do. Total = the root's.
+/// `base`, times the share of the sample rays through a box that are still alive where they enter it: rays stop at
+/// their first hit, so what opaque surfaces hide costs little. After Vinkler, Havran and Sochor, "Visibility driven BVH
+/// build up algorithm for ray tracing" (2012); the share is counted on a grid over all that the rays see. `rays` end
+/// (tmax) where they hit, see end_at_hits; a few thousand do. Where none ends, nothing is hidden and the result is
+/// `base`. Total = that of `base`.
 RayMeasure visible_measure(const RayMeasure& base, std::span<const Ray> rays);
 
 /// LSPH: quality = extent / longest extent.

@@ -43,6 +43,8 @@ class RayMeasure {
 
   /// The measure of all rays: the given total, or that of `root`.
   float total(const Bounds& root) const { return total_ ? *total_ : (*this)(root); }
+  /// The total, where there is one: for measures made of another one.
+  std::optional<float> given_total() const { return total_; }
 
  private:
   Batch batch_;

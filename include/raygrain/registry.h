@@ -24,6 +24,7 @@ struct MeasureEntry {
   std::string name, description;
   bool needs_area = false, needs_samples = false;
   std::function<RayMeasure(const HeuristicInput&)> make;
+  bool needs_hits = false;  // its samples must know their first hit: it is their tmax
 };
 
 struct OrientationEntry {
@@ -87,6 +88,7 @@ Recipe parse_recipe(std::string_view text, const Registry& registry);
 
 bool needs_area(const Recipe& recipe, const Registry& registry);
 bool needs_samples(const Recipe& recipe, const Registry& registry);
+bool needs_hits(const Recipe& recipe, const Registry& registry);
 
 /// Options of the preset `paper`: the recipe's measure and orientation, fallback SAH + LSPH, all thresholds from
 /// recipe.parameters ("+ALL": quality threshold 0 and excellent ratio 0); `binned` merges leaves. Throws Error (kUsage)

@@ -199,7 +199,7 @@ struct StudySources {
 struct StudyPreset {
   std::string name, description;
 };
-/// paper, published, corrected, parameters, areas, memory, scaling, stress.
+/// paper, published, corrected, parameters, areas, memory, scaling, stress, visibility.
 std::vector<StudyPreset> study_presets();
 
 /// The grid behind paper, published, corrected, parameters and scaling, for changes and additions of one's own. Throws

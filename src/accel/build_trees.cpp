@@ -7,6 +7,7 @@
 #include "accel/joint_progress.h"
 #include "base/parallel.h"
 #include "base/timer.h"
+#include "build/estimate.h"
 
 namespace raygrain {
 
@@ -19,10 +20,11 @@ struct Global {
   RayMeasure measure;
 };
 
-Global build_global(const TriangleMesh& mesh, const AcceleratorOptions& options, std::span<const Ray> samples,
+Global build_global(const TriangleMesh& mesh, const AcceleratorOptions& options, std::span<const Ray> given,
                     JointProgress& progress) {
   Recipe recipe = options.global;
   if (options.quality) set_quality(recipe, *options.quality);
+  const std::vector<Ray> samples = samples_for(recipe, options.registry, given, mesh, nullptr, options.threads);
   const double built = options.reinsert ? kBuilt / 2 : kBuilt;
   Bvh tree = build_global_tree(mesh, recipe, options.registry, nullptr, samples,
                                {options.threads, progress.part(0, 0, built)});
@@ -35,6 +37,39 @@ Global build_global(const TriangleMesh& mesh, const AcceleratorOptions& options,
     raygrain::reinsert(tree, build.strategy.measure, reinsertion);
   }
   return {std::make_shared<const Bvh>(std::move(tree)), build.strategy.measure};
+}
+
+/// Recipes for the areas' trees, and for what makes their wide forms.
+struct LocalRecipes {
+  Recipe tree, wide;
+
+  explicit LocalRecipes(const AcceleratorOptions& options) : tree(options.local), wide(options.local) {
+    if (options.wide_measure.empty()) return;
+    wide.measure = options.wide_measure;
+    wide.orientation = "ALL";
+  }
+  bool need_hits(const Registry& registry) const { return needs_hits(tree, registry) || needs_hits(wide, registry); }
+};
+
+LocalTree build_local(const TriangleMesh& mesh, const InfluenceArea& area, const LocalRecipes& recipes,
+                      const AcceleratorOptions& options, std::span<const Ray> given, const Bvh* global,
+                      const std::function<bool(double)>& progress) {
+  const auto samples_of = [&](const Recipe& recipe) {
+    return samples_for(recipe, options.registry, given, mesh, global, options.threads);
+  };
+  LocalTree local = build_local_tree(mesh, area, recipes.tree, options.registry, options.membership,
+                                     samples_of(recipes.tree), {options.threads, progress});
+  if (options.reinsert_local) {
+    Bvh tree = *local.tree;
+    raygrain::reinsert(tree, local.measure, {.threads = options.threads});
+    local.predicted_cost = estimated_cost(tree, local.measure, {});
+    local.log.nodes.assign(tree.nodes.size(), {});  // says nothing about nodes that were moved
+    local.tree = std::make_shared<const Bvh>(std::move(tree));
+  }
+  if (!options.wide_measure.empty())
+    local.measure =
+        make_build_options(recipes.wide, options.registry, {&area, samples_of(recipes.wide)}).strategy.measure;
+  return local;
 }
 
 }  // namespace
@@ -55,7 +90,8 @@ std::vector<Coverage> build_coverages(const std::shared_ptr<const TriangleMesh>&
   return Coverage::of_areas(mesh, areas, coverage);
 }
 
-/// One task per tree, the global one first because it is the longest.
+/// One task per tree, the global one first because it is the longest; and because it ends the samples of local trees
+/// that ask where rays hit.
 BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> areas,
                        const AcceleratorOptions& options) {
   const auto samples = [&](const InfluenceArea* area) {
@@ -66,27 +102,30 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
   BuiltTrees trees;
   trees.locals.resize(locals);
   std::vector<std::optional<SearchTree>> searches(locals);
+  const LocalRecipes recipes(options);
+  const bool ends_samples = locals > 0 && recipes.need_hits(options.registry);
   const bool in_ray_space = options.space == LocalSpace::kRay && options.traversal == Traversal::kWide;
   const auto corners = in_ray_space ? std::make_shared<const TriangleCorners>(mesh) : nullptr;
-  const auto build_local = [&](size_t i) {
+  const auto build_area = [&](size_t i) {
     const Timer timer;
     const InfluenceArea& area = areas[i];
     LocalTree& local = trees.locals[i];
-    local = build_local_tree(mesh, area, options.local, options.registry, options.membership, samples(&area),
-                             {options.threads, progress.part(i + 1, 0, kBuilt)});
+    const std::vector<Ray> own_samples = samples(&area);
+    local = build_local(mesh, area, recipes, options, own_samples,
+                        ends_samples ? trees.global->binary().get() : nullptr, progress.part(i + 1, 0, kBuilt));
     searches[i] = make_search_tree(mesh, local.tree, local.measure, options.traversal, options.isa, options.threads);
     if (in_ray_space) {
       std::vector<uint32_t> triangles = local.tree->prims;
       std::ranges::sort(triangles);
       triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-      local.in_ray_space = build_area_frame_tree(area, corners, triangles, samples(&area), options);
+      local.in_ray_space = build_area_frame_tree(area, corners, triangles, own_samples, options);
       if (local.in_ray_space) searches[i]->add_ray_space(*local.in_ray_space);
     }
     local.build_seconds = timer.seconds();
   };
   const auto build = [&](size_t task) {
     if (task > 0) {
-      build_local(task - 1);
+      build_area(task - 1);
     } else {
       Global global = build_global(mesh, options, samples(nullptr), progress);
       trees.global = make_search_tree(mesh, std::move(global.tree), global.measure, options.traversal, options.isa,
@@ -94,8 +133,10 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
     }
     progress.reach(task, 1);
   };
-  parallel_for(locals + 1, 1, options.threads, [&](size_t begin, size_t end) {
-    for (size_t task = begin; task < end; ++task) build(task);
+  const size_t first = ends_samples ? 1 : 0;
+  if (ends_samples) build(0);
+  parallel_for(locals + 1 - first, 1, options.threads, [&](size_t begin, size_t end) {
+    for (size_t task = begin; task < end; ++task) build(first + task);
   });
   for (std::optional<SearchTree>& search : searches) trees.local_searches.push_back(std::move(*search));
   return trees;

@@ -1,4 +1,5 @@
 // From a mesh and an area to the area's tree.
+#include <algorithm>
 #include <numeric>
 
 #include "raygrain/accelerator.h"
@@ -17,6 +18,16 @@ std::vector<uint32_t> area_members(const TriangleMesh& mesh, const AreaGeometry&
   return members;
 }
 
+std::vector<Ray> samples_for(const Recipe& recipe, const Registry& registry, std::span<const Ray> samples,
+                             const TriangleMesh& mesh, const Bvh* tree, unsigned threads) {
+  const bool has_ends = std::ranges::any_of(samples, [](const Ray& ray) { return ray.tmax < kInf; });
+  if (!needs_hits(recipe, registry) || samples.empty() || has_ends) return {samples.begin(), samples.end()};
+  if (tree != nullptr) return end_at_hits(samples, *tree, mesh);
+  Recipe quick;
+  set_quality(quick, Quality::kFast);
+  return end_at_hits(samples, build_global_tree(mesh, quick, default_registry(), nullptr, {}, {threads, {}}), mesh);
+}
+
 LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, const Recipe& recipe,
                            const Registry& registry, const MembershipRule& membership, std::span<const Ray> samples,
                            const BuildRun& run) {
@@ -31,7 +42,8 @@ LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, 
     for (const uint32_t i : members) centroids.push_back(triangle_centroid(mesh, i));
   }
 
-  const HeuristicInput input{&area, samples, [&](uint32_t primitive, const Bounds& box) {
+  const std::vector<Ray> own_samples = samples_for(recipe, registry, samples, mesh, nullptr, run.threads);
+  const HeuristicInput input{&area, own_samples, [&](uint32_t primitive, const Bounds& box) {
                                return clip_triangle_bounds(mesh, members[primitive], box);
                              }};
   LocalTree local;
@@ -47,7 +59,8 @@ LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, 
 
 Bvh build_global_tree(const TriangleMesh& mesh, const Recipe& recipe, const Registry& registry, BuildLog* log,
                       std::span<const Ray> samples, const BuildRun& run) {
-  const HeuristicInput input{nullptr, samples, [&mesh](uint32_t triangle, const Bounds& box) {
+  const std::vector<Ray> own_samples = samples_for(recipe, registry, samples, mesh, nullptr, run.threads);
+  const HeuristicInput input{nullptr, own_samples, [&mesh](uint32_t triangle, const Bounds& box) {
                                return clip_triangle_bounds(mesh, triangle, box);
                              }};
   const std::vector<Vec3> centroids =

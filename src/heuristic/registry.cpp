@@ -64,7 +64,7 @@ std::vector<MeasureEntry> default_measures() {
       {"SAMPLED", "sample rays that meet the box", false, true,
        [](const HeuristicInput& input) { return sampled_measure(input.samples); }},
       {"VISIBLE", "projected area (without an area: surface area), weighted by the share of sample rays alive there",
-       false, true, make_visible},
+       false, true, make_visible, true},
   };
 }
 
@@ -151,6 +151,10 @@ bool needs_area(const Recipe& recipe, const Registry& registry) {
 
 bool needs_samples(const Recipe& recipe, const Registry& registry) {
   return measure_of(recipe, registry).needs_samples;
+}
+
+bool needs_hits(const Recipe& recipe, const Registry& registry) {
+  return measure_of(recipe, registry).needs_hits;
 }
 
 bool needs_centroids(const Recipe& recipe, const Registry& registry) {

@@ -67,10 +67,8 @@ void trace_and_check(FieldValues& values, const AreaJob& job, const Accelerator&
 
 /// Costs are counted in the binary trees, which they are defined on; the time is that of the trees that users search.
 FieldValues measure_tree(const Comparison& shared, const Accelerator& without_areas, const AreaJob& job,
-                         const Recipe& recipe, const LocalTree& local, const CompareOptions& options) {
-  const HeuristicInput input{&job.area, job.samples};
-  const RayMeasure measure = make_build_options(recipe, options.registry, input).strategy.measure;
-  const TreeStats tree = analyze(*local.tree, measure, options.costs);
+                         const LocalTree& local, const CompareOptions& options) {
+  const TreeStats tree = analyze(*local.tree, local.measure, options.costs);
   const OverlapStats overlap = analyze_overlap(*local.tree, job.geometry);
   const BuildStats build = analyze_build(*local.tree, local.log);
   const TraceStats trace = analyze_rays(*local.tree, *shared.mesh, job.served, options.costs, options.threads);
@@ -84,9 +82,11 @@ FieldValues measure_tree(const Comparison& shared, const Accelerator& without_ar
 /// Trees are built one after another: built side by side they would slow each other and report it as their own time.
 ComparisonRow make_row(const Comparison& shared, const Accelerator& without_areas, const AreaJob& job,
                        const Recipe& recipe, const CompareOptions& options) {
-  auto local = std::make_shared<const LocalTree>(build_local_tree(
-      *shared.mesh, job.area, recipe, options.registry, options.membership, job.samples, {options.threads, {}}));
-  FieldValues values = measure_tree(shared, without_areas, job, recipe, *local, options);
+  const std::vector<Ray> samples =
+      samples_for(recipe, options.registry, job.samples, *shared.mesh, shared.global.get(), options.threads);
+  auto local = std::make_shared<const LocalTree>(build_local_tree(*shared.mesh, job.area, recipe, options.registry,
+                                                                  options.membership, samples, {options.threads, {}}));
+  FieldValues values = measure_tree(shared, without_areas, job, *local, options);
   return {recipe_name(recipe), job.area.name, recipe, values, std::move(local)};
 }
 
@@ -138,10 +138,9 @@ Comparison compare(const Scene& scene, const CompareOptions& options) {
   return result;
 }
 
-std::vector<Ray> sample_rays(const InfluenceArea& area, uint64_t seed) {
-  constexpr size_t kCount = 1000;
+std::vector<Ray> sample_rays(const InfluenceArea& area, uint64_t seed, size_t count) {
   constexpr uint64_t kOther = 0x5a3c96e1d2b4780f;  // no seed that anyone chooses is another one's with this
-  return cast_rays(AreaRays{.area = area}, kCount, seed ^ kOther);
+  return cast_rays(AreaRays{.area = area}, count, seed ^ kOther);
 }
 
 size_t best_row(const Comparison& comparison, const std::string& area, size_t except) {

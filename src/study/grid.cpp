@@ -69,13 +69,14 @@ LocalTree GridRow::build(const SceneTrees& trees, std::span<const Ray> samples, 
   return local;
 }
 
-/// None where the recipe has no use for them.
+/// None where the recipe has no use for them; fewer for measures that ask each of them about each box.
 std::vector<Ray> GridRow::sample(const SceneTrees& trees) const {
+  constexpr size_t kFew = 1000;
   if (!needs_samples(recipe.recipe, grid->registry)) return {};
-  std::vector<Ray> samples = sample_rays(area.area, seed);
-  if (!recipe.visible) return samples;
-  for (Ray& ray : samples) ray.tmax = std::min(ray.tmax, intersect(trees.global, trees.mesh, ray).t);
-  return samples;
+  if (needs_hits(recipe.recipe, grid->registry))
+    return samples_for(recipe.recipe, grid->registry, sample_rays(area.area, seed), trees.mesh, &trees.global);
+  const std::vector<Ray> samples = sample_rays(area.area, seed, kFew);
+  return recipe.visible ? end_at_hits(samples, trees.global, trees.mesh) : samples;
 }
 
 std::vector<Ray> GridRow::cast() const {

@@ -4,8 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "raygrain/heuristics.h"
-
 #include "study/presets.h"
 #include "study/sources.h"
 
@@ -57,22 +55,6 @@ StudyRecipe visible(StudyRecipe row) {
   row.setting = "visibility";
   row.visible = true;
   return row;
-}
-
-/// Projected area times the share of the sample rays through a box that are still alive there. A sample that has ended
-/// counts a little, or boxes that none reached would be worth nothing.
-MeasureEntry visible_projected_area() {
-  return {"PAH-VISIBLE", "projected area, weighted by the share of sample rays alive in the box", true, true,
-          [](const HeuristicInput& input) {
-            constexpr float kFaint = 4;  // samples' worth of doubt
-            std::vector<Ray> endless(input.samples.begin(), input.samples.end());
-            for (Ray& ray : endless) ray.tmax = kInf;
-            const RayMeasure alive = sampled_measure(input.samples), all = sampled_measure(endless);
-            const RayMeasure projected = projected_area_measure(*input.area);
-            return RayMeasure(
-                [=](const Bounds& box) { return projected(box) * (alive(box) + kFaint) / (all(box) + kFaint); },
-                projected.total({}));
-          }};
 }
 
 constexpr std::array kCombos{"PAH+SPFH", "PAH+LSPH", "SAH+SPFH", "SAH+LSPH"};
@@ -137,15 +119,14 @@ StudyGrid corrected_grid(const StudySources& sources) {
   for (const char* combo : {"SAH+ALL@binned", "PAH+ALL@binned"})
     grid.recipes.push_back(reinserted(recipe(combo, grid)));
   for (const char* combo : {"PAH+ALL@binned", "PAH+ALL@spatial"}) grid.recipes.push_back(in_frame(recipe(combo, grid)));
-  grid.registry.measures.push_back(visible_projected_area());
-  for (const char* combo : {"SAMPLED+ALL@binned", "PAH-VISIBLE+ALL@binned"})
-    grid.recipes.push_back(visible(recipe(combo, grid)));
+  grid.recipes.push_back(visible(recipe("SAMPLED+ALL@binned", grid)));
+  grid.recipes.push_back(recipe("VISIBLE+ALL@binned", grid));
   grid.leave_out = [](const StudyScene& scene, const StudyArea& area, const StudyRecipe& row, const StudyRays& rays) {
     const bool is_plane = std::holds_alternative<PlaneArea>(area.area.shape);
     if (rays.spread == PointSpread::kAngle && (is_plane || !is_core(row))) return true;
     const bool is_half = area.variant == "15deg" || area.variant == "45deg";
     // A thousand sample rays for each of millions of boxes take minutes.
-    const bool is_sampled = row.recipe.measure == "SAMPLED" || row.visible;
+    const bool is_sampled = row.recipe.measure == "SAMPLED";
     return is_large(scene) && (rays.spread == PointSpread::kAngle || is_sampled || (is_half && !is_core(row)));
   };
   return grid;

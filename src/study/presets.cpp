@@ -29,6 +29,7 @@ constexpr Preset kPresets[] = {
     {"memory", "section 9.6, counted as the paper does and measured", nullptr, study::memory_study},
     {"scaling", "cost and build time from 1,000 to 4 million triangles", study::scaling_grid, nullptr},
     {"stress", "several areas at once, foreign rays, break-even hit ratios", nullptr, study::stress_study},
+    {"visibility", "trees that know where rays end: splits, reinsertion, wide forms", nullptr, study::visibility_study},
 };
 
 const Preset& find_preset(const std::string& name) {

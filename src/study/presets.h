@@ -13,5 +13,6 @@ StudyGrid scaling_grid(const StudySources& sources);
 Study areas_study(const StudySources& sources);
 Study memory_study(const StudySources& sources);
 Study stress_study(const StudySources& sources);
+Study visibility_study(const StudySources& sources);
 
 }  // namespace raygrain::study

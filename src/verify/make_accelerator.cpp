@@ -29,7 +29,7 @@ AcceleratorOptions options_of(const StructureSpec& spec) {
   options.coverage = std::nullopt;
   if (spec.covered) options.coverage = CoverageOptions{spec.cells, spec.tile, {}, parse_order(spec.order)};
   options.top_level = {spec.octree ? TopLevelKind::kOctree : TopLevelKind::kList, 4};
-  options.samples = samples_of;
+  options.samples = [spec](const InfluenceArea* area) { return samples_of(spec, area); };
   options.threads = spec.threads;
   return options;
 }

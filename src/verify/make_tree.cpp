@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include "raygrain/accelerator.h"
 #include "raygrain/io.h"
 #include "raygrain/rays.h"
 #include "raygrain/refine.h"
@@ -56,8 +57,9 @@ const InfluenceArea* area_of(const StructureSpec& spec, const VerifyScene& scene
   return scene.areas.empty() ? nullptr : &scene.areas[spec.area % scene.areas.size()];
 }
 
-std::vector<Ray> samples_of(const InfluenceArea* area) {
-  return area != nullptr ? cast_rays(AreaRays{*area}, 64, 1) : std::vector<Ray>{};
+std::vector<Ray> samples_of(const StructureSpec& spec, const InfluenceArea* area) {
+  constexpr size_t kCount = 64;
+  return area != nullptr ? cast_rays(AreaRays{*area}, kCount, spec.seed) : std::vector<Ray>{};
 }
 
 Bvh make_tree(const StructureSpec& spec, const VerifyScene& scene) {
@@ -69,7 +71,7 @@ Bvh make_tree(const StructureSpec& spec, const VerifyScene& scene) {
     recipe.measure = "SAH", recipe.orientation = "ALL";
   const TriangleMesh& mesh = *scene.mesh;
   const TriangleMesh built_for = spec.refitted ? shaken(mesh, spec.seed) : mesh;
-  const std::vector<Ray> samples = samples_of(area);
+  const std::vector<Ray> samples = samples_for(recipe, registry, samples_of(spec, area), built_for);
   const ClipPrimitive clip = [&](uint32_t i, const Bounds& box) { return clip_triangle_bounds(built_for, i, box); };
   Bvh tree = build_tree(recipe, registry, {area, samples, clip}, triangle_bounds(built_for),
                         triangle_centroids(built_for), nullptr, {spec.threads, {}});

@@ -64,6 +64,7 @@ Bvh make_tree(const StructureSpec& spec, const VerifyScene& scene);
 
 /// Null for a scene without areas.
 const InfluenceArea* area_of(const StructureSpec& spec, const VerifyScene& scene);
-std::vector<Ray> samples_of(const InfluenceArea* area);
+/// Of the area, drawn by the seed; not ended yet.
+std::vector<Ray> samples_of(const StructureSpec& spec, const InfluenceArea* area);
 
 }  // namespace raygrain::verification

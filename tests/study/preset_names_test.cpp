@@ -12,7 +12,7 @@ namespace raygrain {
 namespace {
 
 TEST(Presets, AreKnownByName) {
-  EXPECT_EQ(study_presets().size(), 8u);
+  EXPECT_EQ(study_presets().size(), 9u);
   for (const auto& run :
        std::vector<std::function<void()>>{[] { preset_study("papers", {}); }, [] { preset_grid("areas", {}); },
                                           [] { preset_study("paper", {.only = {"Woods"}}); }}) {

@@ -34,6 +34,7 @@ std::vector<Expectation> expectations() {
       {"memory", "memory", {"Random100", "Random1000"}},
       {"scaling", "scaling", {}, 500, true},
       {"stress", "stress", {"Random100", "Random1000"}, 500},
+      {"visibility", "visibility", {"City", "Terrain"}, 200, true},
       {"published_shared", "published", {"Wood", "Suzanne", "Cottage", "CottageWalls"}, 1000, false, true},
       {"paper_shared", "paper", {"Suzanne", "Cottage"}, 1000, false, true},
       {"corrected_shared", "corrected", {"Suzanne"}, 1000, true, true},
