@@ -17,6 +17,9 @@ for page in README.md ARCHITECTURE.md CHANGELOG.md TESTING.md docs/*.md; do
     [ -e "$(dirname "$page")/$target" ] || complain "$page links to $target, which is not there"
   done < <(awk '/^```/ { code = !code } !code' "$page" | grep -oE '\]\([^)#]+' | sed 's/^](//' | grep -vE '^https?:' || true)
 done
+for page in README.md ARCHITECTURE.md CHANGELOG.md TESTING.md docs/*.md; do
+  ! grep -nE '^(<<<<<<<|>>>>>>>) ' "$page" || complain "$page holds both sides of a merge"
+done
 for folder in src/*/; do
   grep -q "src/$(basename "$folder")" ARCHITECTURE.md || complain "ARCHITECTURE.md does not mention $folder"
 done
