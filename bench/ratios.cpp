@@ -17,6 +17,7 @@ std::optional<double> ratio_of(const BuildRow& row) {
   return row.embree_bytes > 0 ? ratio(row.embree_seconds, row.raygrain_seconds) : std::nullopt;
 }
 std::optional<double> ratio_sorted(const Row& row) {
+  if (row.api == "single") return std::nullopt;  // sorted rays come in batches
   return ratio(row.raygrain_mrays, row.embree_sorted_mrays);
 }
 std::optional<double> ratio_global(const Row& row) {

@@ -65,6 +65,7 @@ int run(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : 2;
   }
+  if (settings.quick && app.count("--sizes") == 0) settings.sizes = {1, 10, 100, 1000, 10000, 100000};
   if (std::ranges::count(settings.sizes, 0u) > 0) throw Error(ErrorCode::kUsage, "--sizes", "must be at least 1");
   check_scenes(settings, app.count("--scenes") > 0);
   check_threads(settings);

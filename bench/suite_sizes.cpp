@@ -126,10 +126,9 @@ class SizesSuite {
       for (const size_t size : settings_.sizes) measure(sized, size, threads);
   }
 
-  void measure(const Sized& sized, size_t size, unsigned threads) {
-    StructuredRays rays = sized.rays;
-    repeat(rays.set.rays, std::max(size, kLeastRays));
-    repeat(rays.points, rays.points.empty() ? 0 : rays.set.rays.size());
+  /// Through the global tree, in arrays, and where they are there: one a call, in batches.
+  static std::vector<Contestant> contestants(const Sized& sized, const StructuredRays& rays, size_t size,
+                                             unsigned threads) {
     const size_t count = rays.set.rays.size();
     const auto in_calls = [&](size_t of, const auto& call) {
       return Contestant{[=](Answers& a) {
@@ -138,16 +137,26 @@ class SizesSuite {
                         std::make_unique<Answers>(count)};
     };
     std::vector<Contestant> all;
-    all.push_back(
-        in_calls(size, [&](size_t i, size_t n, Answers& a) { call_array(sized.global, rays, i, n, a, threads); }));
-    all.push_back(
-        in_calls(size, [&](size_t i, size_t n, Answers& a) { call_array(sized.accelerator, rays, i, n, a, threads); }));
+    all.push_back(in_calls(
+        size, [&, threads](size_t i, size_t n, Answers& a) { call_array(sized.global, rays, i, n, a, threads); }));
+    all.push_back(in_calls(
+        size, [&, threads](size_t i, size_t n, Answers& a) { call_array(sized.accelerator, rays, i, n, a, threads); }));
     if (count <= kMostDistinctRays)  // more take memory and time, and are no other rays
-      all.push_back(
-          in_calls(count, [&](size_t, size_t, Answers& a) { trace_singly(sized.accelerator, rays, a, threads); }));
-    if (!rays.points.empty())
       all.push_back(in_calls(
-          size, [&](size_t i, size_t n, Answers& a) { call_batch(sized.accelerator, rays, i, n, a, threads); }));
+          count, [&, threads](size_t, size_t, Answers& a) { trace_singly(sized.accelerator, rays, a, threads); }));
+    if (!rays.points.empty())
+      all.push_back(in_calls(size, [&, threads](size_t i, size_t n, Answers& a) {
+        call_batch(sized.accelerator, rays, i, n, a, threads);
+      }));
+    return all;
+  }
+
+  void measure(const Sized& sized, size_t size, unsigned threads) {
+    StructuredRays rays = sized.rays;
+    repeat(rays.set.rays, std::max(size, kLeastRays));
+    repeat(rays.points, rays.points.empty() ? 0 : rays.set.rays.size());
+    const size_t count = rays.set.rays.size();
+    std::vector<Contestant> all = contestants(sized, rays, size, threads);
     race_whole(all, size > kMostDistinctRays ? 1 : kRounds, threads);
     for (const Contestant& c : all)
       if (c.answers->flags != all[0].answers->flags || c.answers->hits != all[0].answers->hits)

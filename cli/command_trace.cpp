@@ -65,10 +65,18 @@ AcceleratorOptions accelerator_options(const Options& options) {
   if (!options.wide_measure.empty()) parse_recipe(options.wide_measure + "+ALL", result.registry);  // is it known?
   if (options.traversal != "wide" && options.traversal != "binary")
     fail_usage("--traversal", "unknown form '" + options.traversal + "'", "Known: wide, binary");
+  if (options.traversal == "binary" && !options.wide_measure.empty())
+    fail_usage("--wide-measure", "says how wide forms are made, and --traversal binary has none",
+               "Leave one of them out");
   result.traversal = options.traversal == "wide" ? Traversal::kWide : Traversal::kBinary;
   result.routing = Routing::kAreas;  // whoever names a recipe wants to see its trees searched
   result.threads = options.common.thread_count();
-  result.samples = [](const InfluenceArea* area) { return area ? sample_rays(*area, 1) : std::vector<Ray>{}; };
+  Recipe wide = result.local;
+  if (!options.wide_measure.empty()) wide.measure = options.wide_measure;
+  const size_t count = std::max(sample_count(result.local, result.registry), sample_count(wide, result.registry));
+  result.samples = [count](const InfluenceArea* area) {
+    return area ? sample_rays(*area, 1, count) : std::vector<Ray>{};
+  };
   return result;
 }
 
@@ -179,7 +187,8 @@ Accelerator make_accelerator(const Options& options, const Scene& scene, const s
   for (const InfluenceArea& area : areas) {
     const std::vector<Ray> samples =
         samples_for(build.local, build.registry, build.samples(&area), scene.mesh, global.get(), build.threads);
-    locals.push_back(build_local_tree(scene.mesh, area, build.local, build.registry, {}, samples, {build.threads, {}}));
+    locals.push_back(
+        build_local_tree(scene.mesh, area, build.local, build.registry, {}, samples, {build.threads, {}, true}));
   }
   return Accelerator(std::make_shared<const TriangleMesh>(scene.mesh), std::move(locals), std::move(global),
                      build.top_level, build.traversal);

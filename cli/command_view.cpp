@@ -70,15 +70,18 @@ ViewTree make_tree(const Scene& scene, size_t area, const Recipe& recipe, const 
   result.area = area;
   const InfluenceArea* where = area == kWholeScene ? nullptr : &scene.areas[area];
   std::vector<Ray> samples;
+  BuildRun ended = run;
+  ended.samples_are_ended = true;
   if (where && needs_samples(recipe, registry))
-    samples = samples_for(recipe, registry, sample_rays(*where, options.seed), scene.mesh, nullptr, run.threads);
+    samples = samples_for(recipe, registry, sample_rays(*where, options.seed, sample_count(recipe, registry)),
+                          scene.mesh, nullptr, run.threads);
   if (where) {
-    LocalTree local = build_local_tree(scene.mesh, *where, recipe, registry, {}, samples, run);
+    LocalTree local = build_local_tree(scene.mesh, *where, recipe, registry, {}, samples, ended);
     result.tree = local.tree;
     result.log = std::move(local.log);
   } else {
     result.tree =
-        std::make_shared<const Bvh>(build_global_tree(scene.mesh, recipe, registry, &result.log, samples, run));
+        std::make_shared<const Bvh>(build_global_tree(scene.mesh, recipe, registry, &result.log, samples, ended));
   }
   result.measure = make_build_options(recipe, registry, {where, samples}).strategy.measure;
   result.values = known_values(*result.tree, result.log, result.measure, where);

@@ -127,11 +127,15 @@ OneTree build_one_tree(const TreeOptions& options, const Scene& scene, const std
   result.recipe = check_tree_options(options, result.registry);
   const bool samples = needs_samples(result.recipe, result.registry);
   result.area = pick_area(options, scene, areas, samples || needs_area(result.recipe, result.registry));
-  if (samples)
-    result.samples = samples_for(result.recipe, result.registry, sample_rays(*result.area, options.seed), scene.mesh,
-                                 nullptr, options.common.thread_count());
-
+  const auto draw_samples = [&] {
+    if (!samples) return;
+    const std::vector<Ray> drawn =
+        sample_rays(*result.area, options.seed, sample_count(result.recipe, result.registry));
+    result.samples =
+        samples_for(result.recipe, result.registry, drawn, scene.mesh, nullptr, options.common.thread_count());
+  };
   if (!options.file.empty()) {
+    draw_samples();
     load_one_tree(result, scene.mesh, options.file);
     return result;
   }
@@ -139,12 +143,15 @@ OneTree build_one_tree(const TreeOptions& options, const Scene& scene, const std
                  bytes_of_tree(scene.mesh, result.area ? &*result.area : nullptr, result.recipe),
                  "Take --quality fast or a smaller scene");
   const std::string step = "build " + recipe_name(result.recipe);
-  const BuildRun run{options.common.thread_count(), [&](double done) {
+  const BuildRun run{options.common.thread_count(),
+                     [&](double done) {
                        progress.show(step, kBuildShare * done);
                        return true;
-                     }};
+                     },
+                     true};
   progress.show(step, 0);
   const Timer timer;
+  draw_samples();
   if (result.area) {
     LocalTree local =
         build_local_tree(scene.mesh, *result.area, result.recipe, result.registry, {}, result.samples, run);

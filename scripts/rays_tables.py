@@ -193,10 +193,10 @@ def break_even(f):
 
 def spread(values):
     """Most distant from the median, and least to most, both in per cent of the median."""
-    values = sorted(values)
-    median = values[len(values) // 2]
-    return (f"{max(values[-1] / median - 1, 1 - values[0] / median) * 100:.1f} %, "
-            f"{(values[-1] - values[0]) / median * 100:.1f} %")
+    if not values:
+        return "-"
+    low, median, high = min(values), sorted(values)[len(values) // 2], max(values)
+    return f"{max(high - median, median - low) / median * 100:.1f} %, {(high - low) / median * 100:.1f} %"
 
 
 def turned(f):
@@ -262,7 +262,7 @@ TABLES = {"about": about, "batches": batches, "singles": singles, "summary": sum
           "differences": differences, "readme": readme}
 
 
-def rewrite(path, figures):
+def rewritten(path, figures):
     with open(path, encoding="utf-8") as file:
         text = file.read()
     found = re.findall(r"<!-- rays:([\w-]+) -->", text)
@@ -274,9 +274,7 @@ def rewrite(path, figures):
             raise SystemExit(f"{path}: {begin} and {end} must be there once, in this order")
         head, tail = text.split(begin)[0], text.split(end)[1]
         text = head + begin + "\n" + TABLES[name](figures) + "\n" + end + tail
-    with open(path, "w", encoding="utf-8") as file:
-        file.write(text)
-    print(f"{path}: {', '.join(found) or 'no tables'}")
+    return text
 
 
 def main():
@@ -286,10 +284,12 @@ def main():
     options = parser.parse_args()
     with open(options.figures, encoding="utf-8") as file:
         figures = Figures(json.load(file))
-    if not figures.rows:
-        raise SystemExit(f"{options.figures}: has no rows of the suite `rays`")
-    for path in options.into or []:
-        rewrite(path, figures)
+    if not any(r.get("ratio_best") for r in figures.rows) and (options.into or not figures.rows):
+        raise SystemExit(f"{options.figures}: has no rows of the suite `rays` beside Embree")
+    texts = [(path, rewritten(path, figures)) for path in options.into or []]  # all are good before any is written
+    for path, text in texts:
+        with open(path, "w", encoding="utf-8") as file:
+            print(f"{path}: {file.write(text)} characters")
     if not options.into:
         for name, make in TABLES.items():
             print(f"<!-- rays:{name} -->\n{make(figures)}\n<!-- /rays:{name} -->\n")

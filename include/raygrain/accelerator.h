@@ -88,8 +88,8 @@ struct LocalTree {
 
 /// Who answered the rays of an area: those that its coverage or its tree answered, and those that are the area's and
 /// still went to the global tree. A valid ray is the area's if AreaGeometry::serves it, or if its line is within a
-/// millionth (sine) of the area's direction or ends at its point, inside the area's window. A ray that the global tree
-/// answers may be several areas', any other ray is counted once.
+/// millionth (sine) of the area's direction, or of a line through its point, inside the area's window, whichever way it
+/// goes. A ray that the global tree answers may be several areas', any other ray is counted once.
 struct AreaUse {
   uint64_t covered = 0;  // answered by the area's coverage
   uint64_t local = 0;    // the search ended in the area's tree
@@ -131,25 +131,25 @@ struct AreaQuestion {
 /// "any hits together", "closest hits together", "any hits one by one" or "closest hits one by one".
 std::string_view name(AreaQuestion question);
 
-/// Rays after which a build has paid for itself, in (0, infinity]: infinity where a ray saves nothing, and where a time
+/// Rays after which a build has paid for itself, in [0, infinity]: infinity where a ray saves nothing, and where a time
 /// is not a number.
 double break_even_rays(double build_seconds, double area_nanoseconds, double global_nanoseconds);
 
 /// How an area's rays fare, asked one way. Times are measured on one thread, the least of three.
 struct AreaTimes {
   AreaQuestion question;
-  size_t rays = 0;              // timed
-  AreaUse use;                  // of them: who answered
-  double area_nanoseconds = 0;  // a ray through this accelerator; the same as the next where no structure answered any
+  size_t rays = 0;                // timed
+  AreaUse use;                    // of them: who answered
+  double area_nanoseconds = 0;    // a ray through this accelerator
   double global_nanoseconds = 0;  // a ray through its global tree alone, asked likewise
-  double break_even_rays = 0;     // of such rays alone, for all that the area has
+  double break_even_rays = 0;     // of such rays alone, for all that the area has; infinity where nothing of it answers
 };
 
 /// What an area costs and saves.
 struct AreaReport {
   std::string name;
   size_t triangles = 0;      // of the local tree; some may be there more than once
-  double build_seconds = 0;  // of everything that the area has
+  double build_seconds = 0;  // of everything that the area has, by the clock, on the threads and beside what built it
   size_t memory_bytes = 0;   // ... likewise, without what areas share
   std::string structures;    // e.g. "coverage, tree in ray space (shear_y), tree"
   std::string routes;        // who answers which rays, and at what predicted cost
@@ -238,8 +238,8 @@ class Accelerator {
   const Bvh& global_tree() const;
   const TopLevel& top_level() const;
   Traversal traversal() const;
-  /// Everything but the mesh, each thing once: trees in all forms with their logs, corners of triangles, coverages, top
-  /// level, tables of areas.
+  /// Everything but the mesh and what measures hold (VISIBLE: 7 MB each), each thing once: trees in all forms with
+  /// their logs, corners of triangles, coverages, top level, tables of areas.
   size_t memory_bytes() const;
   /// The wide trees of these alone, with the corners of those in ray space; 0 under Traversal::kBinary.
   size_t wide_memory_bytes() const;
@@ -261,12 +261,12 @@ std::vector<Ray> samples_for(const Recipe& recipe, const Registry& registry, std
                              const TriangleMesh& mesh, const Bvh* tree = nullptr, unsigned threads = 0);
 
 /// Builds one area's local tree over the triangles that overlap its region; `prims` are triangle ids of `mesh`. The
-/// samples go through samples_for.
+/// samples go through samples_for, unless `run` says that they have.
 LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, const Recipe& recipe,
                            const Registry& registry, const MembershipRule& membership = {},
                            std::span<const Ray> samples = {}, const BuildRun& run = {});
 
-/// Builds the recipe's tree over all triangles. The samples go through samples_for.
+/// Builds the recipe's tree over all triangles. The samples likewise.
 Bvh build_global_tree(const TriangleMesh& mesh, const Recipe& recipe, const Registry& registry, BuildLog* log = nullptr,
                       std::span<const Ray> samples = {}, const BuildRun& run = {});
 

@@ -153,6 +153,7 @@ struct BuildOptions {
 struct BuildRun {
   unsigned threads = 0;
   std::function<bool(double done)> progress = {};
+  bool samples_are_ended = false;  // the sample rays come from samples_for: nobody need find their first hits again
 };
 
 /// Figure 9: ratio <= excellent: satisfied; next quality >= threshold: try; ratio <= acceptable: satisfied; else fall

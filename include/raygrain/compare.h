@@ -57,6 +57,9 @@ Comparison compare(const Scene& scene, const CompareOptions& options);
 /// The rays of an area that recipes with samples (SAMPLED, VISIBLE) are given: others than cast_rays gives for this
 /// seed, so that no tree is measured with the rays that it was built for. samples_for ends them where that is needed.
 std::vector<Ray> sample_rays(const InfluenceArea& area, uint64_t seed, size_t count = 4096);
+/// As many as the recipe is given in commands and studies: 4096 where its measure looks them up (VISIBLE), 1000 where
+/// it asks each of them about each box (SAMPLED).
+size_t sample_count(const Recipe& recipe, const Registry& registry);
 
 /// Index into `rows` of the best recipe of an area by pruned cost, then real cost, then order; the row `except` does
 /// not compete. Throws Error (kNotFound) where there is none.

@@ -81,6 +81,10 @@ Hit Accelerator::Parts::nearest(const Ray& ray, const Route& route, AcceleratorC
     return {};
   }
   if (const auto hit = nearest_covered(route, ray, counters)) return *hit;
+  return nearest_by_trees(ray, route, counters);
+}
+
+Hit Accelerator::Parts::nearest_by_trees(const Ray& ray, const Route& route, AcceleratorCounters* counters) const {
   Hit best;
   SearchOptions options;
   if (route.searches_some) {
@@ -105,6 +109,10 @@ bool Accelerator::Parts::any(const Ray& ray, const Route& route, AcceleratorCoun
     return false;
   }
   if (const auto hit = any_covered(route, ray, counters)) return *hit;
+  return any_by_trees(ray, route, counters);
+}
+
+bool Accelerator::Parts::any_by_trees(const Ray& ray, const Route& route, AcceleratorCounters* counters) const {
   SearchOptions options;
   if (route.searches_some) {
     AreaWalk walk(areas, ray, route.searches, counters);
@@ -130,6 +138,7 @@ Hit Accelerator::Parts::answer_one<Hit>(const Ray& ray, AcceleratorCounters* cou
   if (counters == nullptr) {
     if (route.foreign.is_foreign(ray)) return global.intersect(ray, {}, {}, nullptr);
     if (const auto hit = nearest_covered(route, ray, nullptr)) return *hit;
+    return is_valid(ray) ? nearest_by_trees(ray, route, nullptr) : Hit{};
   }
   count_areas(counters);
   return nearest(ray, route, counters);
@@ -141,6 +150,7 @@ uint8_t Accelerator::Parts::answer_one<uint8_t>(const Ray& ray, AcceleratorCount
   if (counters == nullptr) {
     if (route.foreign.is_foreign(ray)) return global.occluded(ray, {}, nullptr) ? 1 : 0;
     if (const auto hit = any_covered(route, ray, nullptr)) return *hit ? 1 : 0;
+    return is_valid(ray) && any_by_trees(ray, route, nullptr) ? 1 : 0;
   }
   count_areas(counters);
   return any(ray, route, counters) ? 1 : 0;

@@ -49,7 +49,9 @@ struct Accelerator::Parts {
   void count_global(const Ray& ray, AcceleratorCounters* counters) const;
 
   Hit nearest(const Ray& ray, const Route& route, AcceleratorCounters* counters) const;
+  Hit nearest_by_trees(const Ray& ray, const Route& route, AcceleratorCounters* counters) const;
   bool any(const Ray& ray, const Route& route, AcceleratorCounters* counters) const;
+  bool any_by_trees(const Ray& ray, const Route& route, AcceleratorCounters* counters) const;
 
   // Any hits (flags) or nearest ones. Answers: uint8_t or Hit.
   template <class Answer>

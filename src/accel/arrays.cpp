@@ -96,7 +96,9 @@ void Accelerator::Parts::answer_chunk(std::span<const Ray> rays, std::span<Answe
   std::vector<uint32_t>& waiting = route.searches_some ? alone : together;
   for (size_t k = 0; k < bundles.size(); ++k)
     if (const auto some = bundles.rays(k); !some.empty())
-      ask_coverages<Answer>(route.batches, {bundles.shared(k), bundles.points(), answers, some}, waiting, 1, counters);
+      if (!ask_coverages<Answer>(route.batches, {bundles.shared(k), bundles.points(), answers, some}, waiting, 1,
+                                 counters))
+        waiting.insert(waiting.end(), some.begin(), some.end());
   for (const uint32_t number : alone)
     answer_along<Answer>(route, rays.subspan(number, 1), answers.subspan(number, 1), counters);
   answer_gathered<Answer>(rays, together, answers, counters);
@@ -119,13 +121,14 @@ void Accelerator::Parts::answer_array(std::span<const Ray> rays, std::span<Answe
     return;
   }
   std::mutex mutex;
+  const size_t counted_areas = counters != nullptr ? counters->areas.size() : 0;
   const size_t chunk = std::clamp(rays.size() / kChunks, kLeastChunk, kMostChunk);
   parallel_for(rays.size(), chunk, threads, [&](size_t begin, size_t end) {
     const std::span<const Ray> part = rays.subspan(begin, end - begin);
     const std::span<Answer> room = answers.subspan(begin, end - begin);
     if (counters == nullptr) return answer_chunk<Answer>(part, room, nullptr);
     AcceleratorCounters own;
-    own.areas.resize(counters->areas.size());
+    own.areas.resize(counted_areas);
     answer_chunk<Answer>(part, room, &own);
     const std::lock_guard lock(mutex);
     counters->add(own);

@@ -18,9 +18,10 @@ void trace_some(const SharedRays<Answer>& batch, size_t count, const Number& num
                 AcceleratorCounters* counters, const Trace& trace) {
   constexpr size_t kChunk = 2048;
   std::mutex mutex;
+  const size_t areas = counters != nullptr ? counters->areas.size() : 0;
   parallel_for(count, kChunk, threads, [&](size_t begin, size_t end) {
     AcceleratorCounters own;
-    if (counters != nullptr) own.areas.resize(counters->areas.size());
+    own.areas.resize(areas);
     std::vector<Ray> rays(end - begin);
     std::vector<Answer> found(end - begin);
     for (size_t i = begin; i < end; ++i) rays[i - begin] = batch.shared.ray(kIsAny<Answer>, batch.points[number(i)]);
@@ -37,7 +38,12 @@ void trace_some(const SharedRays<Answer>& batch, size_t count, const Number& num
 template <class Answer>
 void Accelerator::Parts::answer_batch(const Shared& shared, std::span<const Vec3> points, std::span<Answer> answers,
                                       unsigned threads, AcceleratorCounters* counters) const {
+  constexpr size_t kMost = size_t{1} << 31;  // numbers of rays have 32 bits
   check_sizes("Accelerator", points.size(), answers.size());
+  if (points.size() > kMost) {
+    answer_batch(shared, points.first(kMost), answers.first(kMost), threads, counters);
+    return answer_batch(shared, points.subspan(kMost), answers.subspan(kMost), threads, counters);
+  }
   count_areas(counters);
   const SharedRays<Answer> batch{shared, points, answers, {}};
   const auto answer_any = [&](std::span<const Ray> rays, std::span<Answer> found, AcceleratorCounters* count) {

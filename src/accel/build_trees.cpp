@@ -27,7 +27,7 @@ Global build_global(const TriangleMesh& mesh, const AcceleratorOptions& options,
   const std::vector<Ray> samples = samples_for(recipe, options.registry, given, mesh, nullptr, options.threads);
   const double built = options.reinsert ? kBuilt / 2 : kBuilt;
   Bvh tree = build_global_tree(mesh, recipe, options.registry, nullptr, samples,
-                               {options.threads, progress.part(0, 0, built)});
+                               {options.threads, progress.part(0, 0, built), true});
   const BuildOptions build = make_build_options(recipe, options.registry, {nullptr, samples});
   if (options.reinsert) {
     ReinsertOptions reinsertion;
@@ -58,7 +58,7 @@ LocalTree build_local(const TriangleMesh& mesh, const InfluenceArea& area, const
     return samples_for(recipe, options.registry, given, mesh, global, options.threads);
   };
   LocalTree local = build_local_tree(mesh, area, recipes.tree, options.registry, options.membership,
-                                     samples_of(recipes.tree), {options.threads, progress});
+                                     samples_of(recipes.tree), {options.threads, progress, true});
   if (options.reinsert_local) {
     Bvh tree = *local.tree;
     raygrain::reinsert(tree, local.measure, {.threads = options.threads});
@@ -90,51 +90,66 @@ std::vector<Coverage> build_coverages(const std::shared_ptr<const TriangleMesh>&
   return Coverage::of_areas(mesh, areas, coverage);
 }
 
+namespace {
+
+/// What builds of all areas share. `global` ends their samples where that is asked; `corners` where trees in ray space
+/// are wanted.
+struct AreaBuilds {
+  const TriangleMesh& mesh;
+  const AcceleratorOptions& options;
+  LocalRecipes recipes;
+  const Bvh* global = nullptr;
+  std::shared_ptr<const TriangleCorners> corners;
+
+  SearchTree build(const InfluenceArea& area, const std::function<bool(double)>& progress, LocalTree& local) const {
+    const Timer timer;
+    const std::vector<Ray> samples = options.samples ? options.samples(&area) : std::vector<Ray>{};
+    local = build_local(mesh, area, recipes, options, samples, global, progress);
+    SearchTree search =
+        make_search_tree(mesh, local.tree, local.measure, options.traversal, options.isa, options.threads);
+    if (corners != nullptr) {
+      std::vector<uint32_t> triangles = local.tree->prims;
+      std::ranges::sort(triangles);
+      triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+      local.in_ray_space = build_area_frame_tree(area, corners, triangles, samples, options);
+      if (local.in_ray_space) search.add_ray_space(*local.in_ray_space);
+    }
+    local.build_seconds = timer.seconds();
+    return search;
+  }
+};
+
+}  // namespace
+
 /// One task per tree, the global one first because it is the longest; and because it ends the samples of local trees
 /// that ask where rays hit.
 BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> areas,
                        const AcceleratorOptions& options) {
-  const auto samples = [&](const InfluenceArea* area) {
-    return options.samples ? options.samples(area) : std::vector<Ray>{};
-  };
   const size_t locals = options.space == LocalSpace::kNone ? 0 : areas.size();
   JointProgress progress(options.progress, locals + 1);
   BuiltTrees trees;
   trees.locals.resize(locals);
   std::vector<std::optional<SearchTree>> searches(locals);
-  const LocalRecipes recipes(options);
-  const bool ends_samples = locals > 0 && recipes.need_hits(options.registry);
-  const bool in_ray_space = options.space == LocalSpace::kRay && options.traversal == Traversal::kWide;
-  const auto corners = in_ray_space ? std::make_shared<const TriangleCorners>(mesh) : nullptr;
-  const auto build_area = [&](size_t i) {
-    const Timer timer;
-    const InfluenceArea& area = areas[i];
-    LocalTree& local = trees.locals[i];
-    const std::vector<Ray> own_samples = samples(&area);
-    local = build_local(mesh, area, recipes, options, own_samples,
-                        ends_samples ? trees.global->binary().get() : nullptr, progress.part(i + 1, 0, kBuilt));
-    searches[i] = make_search_tree(mesh, local.tree, local.measure, options.traversal, options.isa, options.threads);
-    if (in_ray_space) {
-      std::vector<uint32_t> triangles = local.tree->prims;
-      std::ranges::sort(triangles);
-      triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
-      local.in_ray_space = build_area_frame_tree(area, corners, triangles, own_samples, options);
-      if (local.in_ray_space) searches[i]->add_ray_space(*local.in_ray_space);
-    }
-    local.build_seconds = timer.seconds();
-  };
+  AreaBuilds own{mesh, options, LocalRecipes(options), nullptr, nullptr};
+  const bool ends_samples = locals > 0 && own.recipes.need_hits(options.registry);
+  if (options.space == LocalSpace::kRay && options.traversal == Traversal::kWide)
+    own.corners = std::make_shared<const TriangleCorners>(mesh);
   const auto build = [&](size_t task) {
     if (task > 0) {
-      build_area(task - 1);
+      searches[task - 1] = own.build(areas[task - 1], progress.part(task, 0, kBuilt), trees.locals[task - 1]);
     } else {
-      Global global = build_global(mesh, options, samples(nullptr), progress);
+      const std::vector<Ray> samples = options.samples ? options.samples(nullptr) : std::vector<Ray>{};
+      Global global = build_global(mesh, options, samples, progress);
       trees.global = make_search_tree(mesh, std::move(global.tree), global.measure, options.traversal, options.isa,
                                       options.threads);
     }
     progress.reach(task, 1);
   };
   const size_t first = ends_samples ? 1 : 0;
-  if (ends_samples) build(0);
+  if (ends_samples) {
+    build(0);
+    own.global = trees.global->binary().get();
+  }
   parallel_for(locals + 1 - first, 1, options.threads, [&](size_t begin, size_t end) {
     for (size_t task = begin; task < end; ++task) build(first + task);
   });

@@ -90,12 +90,10 @@ class Interview {
     AcceleratorCounters counters;
     answer(scene_, questions, together, answers, &counters);
     times.use = counters.areas[area_];
-    const auto here = [&] {
-      if (times.use.answered() > 0) answer(scene_, questions, together, answers, nullptr);
-    };
+    const auto here = [&] { answer(scene_, questions, together, answers, nullptr); };
     const auto there = [&] { answer(global_, questions, together, answers, nullptr); };
     std::tie(times.area_nanoseconds, times.global_nanoseconds) = least_nanoseconds(questions.size(), here, there);
-    if (times.use.answered() == 0) times.area_nanoseconds = times.global_nanoseconds;
+    if (times.use.answered() == 0) return times;  // and never pay, whatever the clock says
     times.break_even_rays = raygrain::break_even_rays(build_seconds, times.area_nanoseconds, times.global_nanoseconds);
     return times;
   }
@@ -168,7 +166,8 @@ Explanation Accelerator::explain(const AcceleratorCounters& counters, size_t ray
 
 double break_even_rays(double build_seconds, double area_nanoseconds, double global_nanoseconds) {
   const double saved = global_nanoseconds - area_nanoseconds;
-  return saved > 0 && build_seconds >= 0 ? build_seconds * 1e9 / saved : kInfinity;
+  const double rays = build_seconds * 1e9 / saved;
+  return saved > 0 && build_seconds >= 0 && !std::isnan(rays) ? rays : kInfinity;
 }
 
 }  // namespace raygrain

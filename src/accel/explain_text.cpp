@@ -26,7 +26,8 @@ std::string who_answered(const AreaUse& use, uint64_t rays) {
 std::string text_of(const AreaTimes& times) {
   const std::string question(name(times.question));
   if (times.use.answered() == 0)
-    return text_line("  left to the global tree: %s (%.0f ns a ray)\n", question.c_str(), times.global_nanoseconds);
+    return text_line("  left to the global tree: %s (%.0f ns a ray, %.0f ns without areas)\n", question.c_str(),
+                     times.area_nanoseconds, times.global_nanoseconds);
   const std::string measured = text_line(" (%.0f ns a ray, %.0f ns through the global tree; ", times.area_nanoseconds,
                                          times.global_nanoseconds) +
                                who_answered(times.use, times.rays) + ")\n";

@@ -6,9 +6,6 @@
 namespace raygrain {
 namespace {
 
-/// Coverage takes rays that leave its columns by a slope of 2^-22; floats see that as less than this.
-constexpr double kAxisSine = 0x1p-18;
-
 float greatest_square(const InfluenceArea& area, Reach reach) {
   const double least = std::max(0.0, 1 - static_cast<double>(area.tolerance));
   const double tolerated = reach == Reach::kTolerance ? 1 - least * least : 0;

@@ -20,11 +20,13 @@ enum class Reach : uint8_t {
 /// Does the ray's line pass the point by, at a sine of more than the root of `greatest_square`? False for invalid rays.
 inline bool passes_by(const Ray& ray, Vec3 point, float greatest_square) {
   const Vec3 away = ray.origin - point, beside = cross(away, ray.direction);
-  return dot(beside, beside) > greatest_square * dot(ray.direction, ray.direction) * dot(away, away);
+  const float bound = greatest_square * dot(ray.direction, ray.direction) * dot(away, away);
+  return bound > 0 && dot(beside, beside) > bound;  // where squares are 0 as floats, nothing is sure
 }
 
-/// Coverage takes rays that leave its columns by a slope of 2^-22; floats see that as a sine of less than 2^-18.
-inline constexpr float kAxisSquare = 0x1.0001p-36f;
+/// Coverage takes rays that leave its columns by a slope of 2^-22; floats see that as a sine of less than this.
+inline constexpr double kAxisSine = 0x1p-18;
+inline constexpr float kAxisSquare = static_cast<float>(kAxisSine * kAxisSine * (1 + 0x1p-18));
 
 /// Tells by the line alone. Whoever passes may still be foreign; nobody's answer depends on it.
 class ForeignFilter {
@@ -38,12 +40,13 @@ class ForeignFilter {
 
   size_t memory_bytes() const { return axes_.capacity() * sizeof(Axis) + eyes_.capacity() * sizeof(Eye); }
 
-  /// The ray concerns no area. False for invalid rays, unless all are foreign.
+  /// The ray concerns no area. Anything for invalid rays: they miss wherever they go.
   bool is_foreign(const Ray& ray) const {
     const float size = dot(ray.direction, ray.direction);
     for (const Axis& axis : axes_) {
       const Vec3 beside = cross(axis.direction, ray.direction);
-      if (!(dot(beside, beside) > axis.greatest_square * size)) return false;
+      const float bound = axis.greatest_square * size;
+      if (!(bound > 0 && dot(beside, beside) > bound)) return false;
     }
     for (const Eye& eye : eyes_)
       if (!passes_by(ray, eye.place, eye.greatest_square)) return false;

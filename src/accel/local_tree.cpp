@@ -28,6 +28,16 @@ std::vector<Ray> samples_for(const Recipe& recipe, const Registry& registry, std
   return end_at_hits(samples, build_global_tree(mesh, quick, default_registry(), nullptr, {}, {threads, {}}), mesh);
 }
 
+namespace {
+
+std::vector<Ray> samples_of(const TriangleMesh& mesh, const Recipe& recipe, const Registry& registry,
+                            std::span<const Ray> samples, const BuildRun& run) {
+  if (run.samples_are_ended) return {samples.begin(), samples.end()};
+  return samples_for(recipe, registry, samples, mesh, nullptr, run.threads);
+}
+
+}  // namespace
+
 LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, const Recipe& recipe,
                            const Registry& registry, const MembershipRule& membership, std::span<const Ray> samples,
                            const BuildRun& run) {
@@ -42,7 +52,7 @@ LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, 
     for (const uint32_t i : members) centroids.push_back(triangle_centroid(mesh, i));
   }
 
-  const std::vector<Ray> own_samples = samples_for(recipe, registry, samples, mesh, nullptr, run.threads);
+  const std::vector<Ray> own_samples = samples_of(mesh, recipe, registry, samples, run);
   const HeuristicInput input{&area, own_samples, [&](uint32_t primitive, const Bounds& box) {
                                return clip_triangle_bounds(mesh, members[primitive], box);
                              }};
@@ -59,7 +69,7 @@ LocalTree build_local_tree(const TriangleMesh& mesh, const InfluenceArea& area, 
 
 Bvh build_global_tree(const TriangleMesh& mesh, const Recipe& recipe, const Registry& registry, BuildLog* log,
                       std::span<const Ray> samples, const BuildRun& run) {
-  const std::vector<Ray> own_samples = samples_for(recipe, registry, samples, mesh, nullptr, run.threads);
+  const std::vector<Ray> own_samples = samples_of(mesh, recipe, registry, samples, run);
   const HeuristicInput input{nullptr, own_samples, [&mesh](uint32_t triangle, const Bounds& box) {
                                return clip_triangle_bounds(mesh, triangle, box);
                              }};

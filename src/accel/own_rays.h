@@ -5,8 +5,8 @@
 
 namespace raygrain {
 
-/// A valid ray that the area serves, or whose line is within a millionth (sine) of its direction or ends at its point,
-/// in its window (see AreaUse).
+/// A valid ray that the area serves, or whose line is within a millionth (sine) of its direction, or of a line through
+/// its point, in its window (see AreaUse).
 bool is_own_ray(const AreaGeometry& area, const Ray& ray);
 
 }  // namespace raygrain

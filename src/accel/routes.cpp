@@ -7,9 +7,9 @@ namespace {
 
 /// What is not the global tree must be expected to save a tenth.
 constexpr double kLeastGain = 0.9;
-/// A ray of a batch costs its coverage this share of what it costs alone, or less. Measured: docs/performance-rays.md,
-/// "How many rays a call".
-constexpr double kShareOfBatch = 0.5;
+/// A ray of a large batch costs its coverage this share of what it costs alone, or less. Measured:
+/// docs/performance-rays.md, "How many rays a call".
+constexpr double kShareOfBatch = 0.4;
 
 constexpr size_t kMostOfEye = 254;  // coverages that Coverage::divide takes
 
@@ -39,12 +39,21 @@ Choice cheapest_of_many(const WayCosts& costs, bool can_cover, bool can_search, 
   return choice;
 }
 
-void add(const AreaGeometry& area, const AreaCoverage& coverage, BatchCoverages& batches) {
-  if (area.is_plane()) return batches.planes.push_back(coverage);
+/// False where the point has as many already as can be told apart.
+bool add(const AreaGeometry& area, const AreaCoverage& coverage, BatchCoverages& batches) {
+  if (area.is_plane()) {
+    batches.planes.push_back(coverage);
+    return true;
+  }
   const Vec3 place = std::get<PointArea>(area.area().shape).eye;
   const auto eye = std::ranges::find(batches.eyes, place, &BatchCoverages::Eye::place);
-  if (eye == batches.eyes.end()) return batches.eyes.push_back({place, {coverage}});
-  if (eye->coverages.size() < kMostOfEye) eye->coverages.push_back(coverage);
+  if (eye == batches.eyes.end()) {
+    batches.eyes.push_back({place, {coverage}});
+    return true;
+  }
+  if (eye->coverages.size() >= kMostOfEye) return false;
+  eye->coverages.push_back(coverage);
+  return true;
 }
 
 Route make_route(std::span<const AreaGeometry> areas, std::span<const Coverage> coverages,
@@ -52,9 +61,9 @@ Route make_route(std::span<const AreaGeometry> areas, std::span<const Coverage> 
   Route route;
   std::vector<Reach> reaches;
   std::vector<uint8_t> are_asked;
-  for (const Choice& choice : choices) {
+  for (Choice choice : choices) {
     const auto area = static_cast<uint32_t>(reaches.size());
-    if (choice.covers_batches) add(areas[area], {coverages[area], area}, route.batches);
+    choice.covers_batches = choice.covers_batches && add(areas[area], {coverages[area], area}, route.batches);
     are_asked.push_back(choice.covers ? 1 : 0);
     route.covers.push_back(choice.asks_coverage() ? 1 : 0);
     route.searches.push_back(choice.searches ? 1 : 0);

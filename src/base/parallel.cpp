@@ -64,6 +64,7 @@ void parallel_for(size_t count, size_t grain, unsigned threads, const std::funct
   grain = std::max<size_t>(grain, 1);
   const size_t chunks = (count + grain - 1) / grain;
   const auto run = [&](size_t chunk) { body(chunk * grain, std::min(count, (chunk + 1) * grain)); };
+  if (chunks == 1) return run(0);  // without asking the system for its number of processors
   if (threads == 0) threads = default_threads();
   threads = static_cast<unsigned>(std::min<size_t>(threads, chunks));
   if (threads > 1) return run_chunks(chunks, threads, run);

@@ -82,10 +82,12 @@ FieldValues measure_tree(const Comparison& shared, const Accelerator& without_ar
 /// Trees are built one after another: built side by side they would slow each other and report it as their own time.
 ComparisonRow make_row(const Comparison& shared, const Accelerator& without_areas, const AreaJob& job,
                        const Recipe& recipe, const CompareOptions& options) {
+  const std::span<const Ray> some =
+      std::span(job.samples).first(std::min(job.samples.size(), sample_count(recipe, options.registry)));
   const std::vector<Ray> samples =
-      samples_for(recipe, options.registry, job.samples, *shared.mesh, shared.global.get(), options.threads);
-  auto local = std::make_shared<const LocalTree>(build_local_tree(*shared.mesh, job.area, recipe, options.registry,
-                                                                  options.membership, samples, {options.threads, {}}));
+      samples_for(recipe, options.registry, some, *shared.mesh, shared.global.get(), options.threads);
+  auto local = std::make_shared<const LocalTree>(build_local_tree(
+      *shared.mesh, job.area, recipe, options.registry, options.membership, samples, {options.threads, {}, true}));
   FieldValues values = measure_tree(shared, without_areas, job, *local, options);
   return {recipe_name(recipe), job.area.name, recipe, values, std::move(local)};
 }
@@ -136,6 +138,10 @@ Comparison compare(const Scene& scene, const CompareOptions& options) {
   }
   progress.finish();
   return result;
+}
+
+size_t sample_count(const Recipe& recipe, const Registry& registry) {
+  return needs_hits(recipe, registry) ? 4096 : 1000;
 }
 
 std::vector<Ray> sample_rays(const InfluenceArea& area, uint64_t seed, size_t count) {

@@ -58,9 +58,9 @@ struct GridRow {
 };
 
 LocalTree GridRow::build(const SceneTrees& trees, std::span<const Ray> samples, const RayMeasure& own) const {
-  LocalTree local = grid->rules.local_tree
-                        ? grid->rules.local_tree(trees.mesh, area.area, recipe)
-                        : build_local_tree(trees.mesh, area.area, recipe.recipe, grid->registry, {}, samples);
+  LocalTree local = grid->rules.local_tree ? grid->rules.local_tree(trees.mesh, area.area, recipe)
+                                           : build_local_tree(trees.mesh, area.area, recipe.recipe, grid->registry, {},
+                                                              samples, {0, {}, true});
   local.area = area.area;
   if (!recipe.reinsert) return local;
   Bvh tree = *local.tree;
@@ -69,13 +69,12 @@ LocalTree GridRow::build(const SceneTrees& trees, std::span<const Ray> samples, 
   return local;
 }
 
-/// None where the recipe has no use for them; fewer for measures that ask each of them about each box.
+/// None where the recipe has no use for them.
 std::vector<Ray> GridRow::sample(const SceneTrees& trees) const {
-  constexpr size_t kFew = 1000;
   if (!needs_samples(recipe.recipe, grid->registry)) return {};
+  const std::vector<Ray> samples = sample_rays(area.area, seed, sample_count(recipe.recipe, grid->registry));
   if (needs_hits(recipe.recipe, grid->registry))
-    return samples_for(recipe.recipe, grid->registry, sample_rays(area.area, seed), trees.mesh, &trees.global);
-  const std::vector<Ray> samples = sample_rays(area.area, seed, kFew);
+    return samples_for(recipe.recipe, grid->registry, samples, trees.mesh, &trees.global);
   return recipe.visible ? end_at_hits(samples, trees.global, trees.mesh) : samples;
 }
 

@@ -79,7 +79,7 @@ struct Built {
 Built build(const TriangleMesh& mesh, const InfluenceArea& area, const Variant& variant, uint64_t seed) {
   const Registry registry = default_registry();
   const Recipe recipe{variant.measure, "ALL", "binned", {}}, visible{"VISIBLE", "ALL", "binned", {}};
-  const BuildRun one_thread{1, {}};
+  const BuildRun one_thread{1, {}, true};
   Built built;
   const Timer timer;
   std::vector<Ray> samples;

@@ -26,6 +26,7 @@ AcceleratorOptions options_of(const StructureSpec& spec) {
   options.traversal = spec.traversal == "binary" ? Traversal::kBinary : Traversal::kWide;
   options.space = spec.ray_space ? LocalSpace::kRay : LocalSpace::kWorld;
   options.isa = parse_isa(spec.isa);
+  if (spec.seed % 2 == 0) options.routing = Routing::kAreas;  // else as sample rays say: often the global tree
   options.coverage = std::nullopt;
   if (spec.covered) options.coverage = CoverageOptions{spec.cells, spec.tile, {}, parse_order(spec.order)};
   options.top_level = {spec.octree ? TopLevelKind::kOctree : TopLevelKind::kList, 4};

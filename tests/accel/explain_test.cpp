@@ -78,7 +78,9 @@ TEST(Explain, AsksWhatUsersOfAnAreaAsk) {
         const Ray back{ray.origin, -ray.direction, 0, kInf};
         surfaces += occluded_reference(mesh, back) ? 1 : 0;
       }
-      EXPECT_GE(surfaces, any ? 490u : 0u);
+      if (any) {
+        EXPECT_GE(surfaces, 490u);
+      }
       EXPECT_EQ(questions.points, questions_of(*area, mesh, any, 500, 7).points);
       EXPECT_NE(questions.points, questions_of(*area, mesh, any, 500, 8).points);
     }
@@ -109,14 +111,15 @@ TEST(Explain, ReportsEveryQuestionWithTheStructureThatAnswers) {
         EXPECT_EQ(t.rays, 300u);
         EXPECT_GT(t.global_nanoseconds, 0);
         EXPECT_GT(t.area_nanoseconds, 0);
-        EXPECT_EQ(t.break_even_rays, break_even_rays(area.build_seconds, t.area_nanoseconds, t.global_nanoseconds));
+        if (t.use.answered() > 0) {
+          EXPECT_EQ(t.break_even_rays, break_even_rays(area.build_seconds, t.area_nanoseconds, t.global_nanoseconds));
+        }
         if (covered) {
           const uint64_t answered = count_covered(scene.coverages()[a], t.question.any, asked.rays);
           EXPECT_GT(answered, 285u);
           EXPECT_EQ(t.use, (AreaUse{answered, 0, 300 - answered}));
         } else if (area.name == "camera" && !t.question.any) {  // a local tree has no rays from before the near plane
           EXPECT_EQ(t.use, (AreaUse{0, 0, 300}));
-          EXPECT_EQ(t.area_nanoseconds, t.global_nanoseconds);
           EXPECT_EQ(t.break_even_rays, kInfinity);
         } else {
           EXPECT_GT(t.use.local, 0u);
@@ -177,7 +180,7 @@ TEST(Explain, LeadsWithWhatPaysSoonest) {
       "99 % answered by coverage, 0 % by its tree)\n"
       "  saves nothing: closest hits together (121 ns a ray, 120 ns through the global tree; "
       "100 % answered by coverage, 0 % by its tree)\n"
-      "  left to the global tree: closest hits one by one (90 ns a ray)\n"
+      "  left to the global tree: closest hits one by one (90 ns a ray, 90 ns without areas)\n"
       "  built in 0.250 s, 3.5 MB, 12 triangles in its tree\n"
       "  any hit: a\n"
       "  closest hit: b\n"

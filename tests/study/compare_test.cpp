@@ -230,10 +230,16 @@ TEST(SampleRays, AreNoneOfThoseTraced) {
   const InfluenceArea area = generate_scene({"random100"}).areas.at(0);
   for (uint64_t seed = 0; seed < 2000; ++seed) {
     SCOPED_TRACE(seed);
-    const std::vector<Ray> samples = sample_rays(area, 1), traced = cast_rays(AreaRays{.area = area}, 2, seed);
-    ASSERT_EQ(samples.size(), 1000u);
+    const std::vector<Ray> samples = sample_rays(area, 1, 2), traced = cast_rays(AreaRays{.area = area}, 2, seed);
+    ASSERT_EQ(samples.size(), 2u);
     ASSERT_NE(samples[0].origin, traced[0].origin);
   }
+}
+
+TEST(SampleRays, AreAsManyAsTheMeasureCanUse) {
+  const Registry registry = default_registry();
+  EXPECT_EQ(sample_count({"VISIBLE", "ALL", "binned", {}}, registry), 4096u);
+  EXPECT_EQ(sample_count({"SAMPLED", "ALL", "binned", {}}, registry), 1000u);
 }
 
 TEST(PaperRecipes, NamesAndPreset) {
