@@ -10,6 +10,7 @@
 #include "base/random.h"
 #include "io/isolation.h"
 #include "mesh_files.h"
+#include "support/mesh_families.h"
 #include "support/shared.h"
 
 namespace raygrain {
@@ -86,7 +87,7 @@ TEST_F(HostileMesh, TruncatedAtEveryByte) {
 TEST_F(HostileMesh, FlippedBytes) {
   for (const test::MeshFile& file : test::mesh_files(test::small_mesh())) {
     SCOPED_TRACE(file.name);
-    for (uint64_t seed = 0; seed < (file.is_read_here ? 1000u : 40u); ++seed) {
+    for (uint64_t seed = 0; seed < (file.is_read_here ? test::seed_count(1000) : 40); ++seed) {
       SCOPED_TRACE("seed " + std::to_string(seed));
       Random random(seed);
       std::string bytes = file.bytes;

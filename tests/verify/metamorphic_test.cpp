@@ -65,7 +65,7 @@ void expect_answers(const TriangleMesh& mesh, const std::vector<Ray>& rays, cons
 /// body(mesh, rays, seed): meshes of every family, and rays of every kind about them.
 template <class Body>
 void for_scenes(uint64_t seeds, size_t rays, const Body& body) {
-  if (seed_count(4) == 1) rays /= 4;
+  if (seed_count(4) == 1) rays /= 8;
   for (uint64_t seed = 0; seed < seed_count(seeds); ++seed)
     for (const NamedMesh& family : mesh_families(seed)) {
       if (family.mesh.triangles.empty()) continue;

@@ -32,7 +32,7 @@ std::string text_of(const VerifyResult& result) {
 
 TEST(Verify, FindsNothingWrong) {
   VerifyOptions options;
-  options.rays = at_scale(10'000, 250'000, 30'000'000);
+  options.rays = at_scale(6'000, 250'000, 30'000'000);
   options.tests_per_scene = at_scale(20'000, 200'000, 1'000'000);
   options.structures_per_scene = 5;
   options.seed = 20;
