@@ -23,20 +23,25 @@ target_compile_definitions(raygrain_options INTERFACE
 
 set(RAYGRAIN_MODULES "" CACHE INTERNAL "")
 
-# The standard headers that nearly every source reads, read once.
-file(WRITE ${PROJECT_BINARY_DIR}/generated/standard_headers.cpp "// Nothing but what the precompiled headers hang on.\n")
-add_library(raygrain_standard_headers OBJECT ${PROJECT_BINARY_DIR}/generated/standard_headers.cpp)
-set_target_properties(raygrain_standard_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
-target_link_libraries(raygrain_standard_headers PRIVATE raygrain_options)
-target_precompile_headers(raygrain_standard_headers PRIVATE
-  <algorithm> <array> <cmath> <functional> <memory> <optional> <span> <string> <vector>)
+# The standard headers that nearly every source reads, read once under sanitizers: elsewhere GCC 12 warns about the
+# inside of std::string where they are precompiled.
+if(RAYGRAIN_SANITIZE)
+  file(WRITE ${PROJECT_BINARY_DIR}/generated/standard_headers.cpp "// Nothing but what the precompiled headers hang on.\n")
+  add_library(raygrain_standard_headers OBJECT ${PROJECT_BINARY_DIR}/generated/standard_headers.cpp)
+  set_target_properties(raygrain_standard_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_link_libraries(raygrain_standard_headers PRIVATE raygrain_options)
+  target_precompile_headers(raygrain_standard_headers PRIVATE
+    <algorithm> <array> <cmath> <functional> <memory> <optional> <span> <string> <vector>)
+endif()
 
 function(raygrain_module name)
   cmake_parse_arguments(ARG "" "" "USES;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
   add_library(raygrain_${name} STATIC ${sources})
   set_target_properties(raygrain_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON LINKER_LANGUAGE CXX)
-  target_precompile_headers(raygrain_${name} REUSE_FROM raygrain_standard_headers)
+  if(RAYGRAIN_SANITIZE)
+    target_precompile_headers(raygrain_${name} REUSE_FROM raygrain_standard_headers)
+  endif()
   target_include_directories(raygrain_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   list(TRANSFORM ARG_USES PREPEND raygrain_)
   target_link_libraries(raygrain_${name} PUBLIC ${ARG_USES} PRIVATE raygrain_options ${ARG_PRIVATE})
