@@ -23,9 +23,9 @@ target_compile_definitions(raygrain_options INTERFACE
 
 set(RAYGRAIN_MODULES "" CACHE INTERNAL "")
 
-# The standard headers that nearly every source reads, read once under sanitizers: elsewhere GCC 12 warns about the
-# inside of std::string where they are precompiled.
-if(RAYGRAIN_SANITIZE)
+# The standard headers that nearly every source reads, read once under GCC's sanitizers: without them GCC 12 warns about
+# the inside of std::string where they are precompiled.
+if(RAYGRAIN_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   file(WRITE ${PROJECT_BINARY_DIR}/generated/standard_headers.cpp "// Nothing but what the precompiled headers hang on.\n")
   add_library(raygrain_standard_headers OBJECT ${PROJECT_BINARY_DIR}/generated/standard_headers.cpp)
   set_target_properties(raygrain_standard_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
@@ -39,7 +39,7 @@ function(raygrain_module name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/${name}/*.cpp)
   add_library(raygrain_${name} STATIC ${sources})
   set_target_properties(raygrain_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON LINKER_LANGUAGE CXX)
-  if(RAYGRAIN_SANITIZE)
+  if(TARGET raygrain_standard_headers)
     target_precompile_headers(raygrain_${name} REUSE_FROM raygrain_standard_headers)
   endif()
   target_include_directories(raygrain_${name} PUBLIC ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
