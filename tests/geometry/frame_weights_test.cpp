@@ -10,30 +10,16 @@
 
 #include "base/trigonometry.h"
 #include "geometry/area_support.h"
+#include "geometry/frame_support.h"
 #include "geometry/region_support.h"
 #include "support/mesh_families.h"
 
 namespace raygrain {
 namespace {
 
-constexpr float kAll = 1 - 0x1p-24f;  // the greatest tolerance: half a sphere
+using test::for_frames;
 
-/// Calls check(frame, area, random) for frames of every kind.
-template <class Check>
-void for_frames(uint64_t seeds, const Check& check) {
-  for (uint64_t seed = 1; seed <= test::seed_count(seeds); ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
-    InfluenceArea random_area = test::random_area(random, seed % 2 == 0);
-    if (seed % 4 == 1) test::widen(random_area, random);
-    const AreaGeometry area(random_area);
-    for (const FrameKind kind : frame_kinds(area)) {
-      SCOPED_TRACE(name(kind));
-      check(*area_frame(kind, area), area, random);
-      if (testing::Test::HasFatalFailure()) return;
-    }
-  }
-}
+constexpr float kAll = 1 - 0x1p-24f;  // the greatest tolerance: half a sphere
 
 AreaGeometry with_tolerance(const AreaGeometry& area, float tolerance) {
   InfluenceArea changed = area.area();

@@ -9,11 +9,14 @@
 #include "raygrain/error.h"
 
 #include "geometry/area_support.h"
+#include "geometry/frame_support.h"
 #include "geometry/region_support.h"
 #include "support/mesh_families.h"
 
 namespace raygrain {
 namespace {
+
+using test::for_frames;
 
 using Real = Vector3<long double>;
 
@@ -39,23 +42,6 @@ bool is_in(const Bounds& box, Real p) {
 }
 bool is_shown(const RayFrame& frame, Real p) {
   return !frame.is_projective() || depth(frame, p) >= static_cast<long double>(frame.near_z);
-}
-
-/// Calls check(frame, area, random) for frames of every kind.
-template <class Check>
-void for_frames(uint64_t seeds, const Check& check) {
-  for (uint64_t seed = 1; seed <= test::seed_count(seeds); ++seed) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Random random(seed);
-    InfluenceArea random_area = test::random_area(random, seed % 2 == 0);
-    if (seed % 4 == 1) test::widen(random_area, random);
-    const AreaGeometry area(random_area);
-    for (const FrameKind kind : frame_kinds(area)) {
-      SCOPED_TRACE(name(kind));
-      check(*area_frame(kind, area), area, random);
-      if (testing::Test::HasFatalFailure()) return;
-    }
-  }
 }
 
 Vec3 some_point(const AreaGeometry& area, Random& random) {
