@@ -14,6 +14,7 @@
 #include "cli/given_rays.h"
 #include "cli/memory.h"
 #include "cli/open_scene.h"
+#include "cli/structures.h"
 #include "cli/values.h"
 
 namespace raygrain::cli {
@@ -26,7 +27,8 @@ struct Options {
   CommonOptions common;
   AreaOptions areas;
   RayOptions rays;
-  std::string scene, space = "world", quality;
+  StructureOptions structures;
+  std::string scene, quality;
   uint64_t samples = 4096;
   bool any = false;
 };
@@ -34,13 +36,7 @@ struct Options {
 AcceleratorOptions accelerator_options(const Options& options) {
   AcceleratorOptions result;
   if (!options.quality.empty()) result.quality = parse_quality(options.quality);
-  if (options.space == "none") {
-    result.space = LocalSpace::kNone;
-  } else if (options.space == "ray") {
-    result.space = LocalSpace::kRay;
-  } else if (options.space != "world") {
-    fail_usage("--space", "unknown space '" + options.space + "'", "Known: none, world, ray");
-  }
+  set_structures(options.structures, result);
   result.threads = options.common.thread_count();
   return result;
 }
@@ -177,9 +173,7 @@ Action declare_explain(Arguments& arguments) {
   add_ray_options(arguments, options->rays);
   arguments.flag("--any", options->any, "Ask whether these rays hit anything, not for their nearest hits");
   add_area_options(arguments, options->areas);
-  arguments.group("Structures");
-  arguments.text("--space", "NAME", options->space,
-                 "Space of the areas' trees: world, ray (both), or none for coverage alone [world]");
+  add_structure_options(arguments, options->structures);
   arguments.text("--quality", "NAME", options->quality, "Of the tree for all other rays: fast, balanced or best");
   add_common(arguments, options->common);
   arguments.footer("With --rays or --set it also says which of these rays, as one array, each area answers.");
