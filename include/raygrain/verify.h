@@ -64,8 +64,10 @@ struct RayStructure {
 };
 
 /// One of raygrain's structures, chosen by the seed: binary and wide trees of any builder, measure and orientation,
-/// reinserted, refitted, or read from a file; trees in ray space; coverages; accelerators with areas and without; each
-/// on any instruction set of this CPU, asked ray by ray or in batches of any size, on one thread or several.
+/// reinserted under that measure or another, refitted, or read from a file, with wide forms by any measure; trees in
+/// ray space; coverages; accelerators with areas and without, in every LocalSpace, with any frame, quality, measure of
+/// wide forms and reinsertion; each on any instruction set of this CPU, asked ray by ray or in batches of any size, on
+/// one thread or several.
 RayStructure random_structure(uint64_t seed);
 
 /// From a name that random_structure gave, e.g. "wide tree=PAH+SPFH@spatial leaf=3 isa=avx2 batch=7". Throws Error
@@ -86,7 +88,9 @@ struct VerifyTally {
   uint64_t leaks = 0;        // of the last two, those that did not
   double seconds = 0;
   /// Of the comparisons, those of structures and rays with something in common, e.g. "wide, mixed rays", "isa avx2",
-  /// "measure PAH", "builder spatial", "frame shear_y", "batches", "columns"; each comparison is in several.
+  /// "measure PAH", "wide, measure VISIBLE", "wide forms by VISIBLE", "accelerators without local trees", "builder
+  /// spatial", "frame shear_y", "batches", "columns"; each comparison is in several. An accelerator's are counted under
+  /// all that it has, whichever of it answered.
   std::map<std::string, uint64_t> comparisons_of;
 
   void add(const VerifyTally& other);

@@ -23,24 +23,62 @@ std::string text_of(RayGroupKind rays) {
   return {};
 }
 
-void add_recipe(const std::string& name, std::set<std::string>& aspects) {
-  const Recipe recipe = parse_recipe(name, verify_registry(1));
+using Aspects = std::set<std::string>;
+
+void add_recipe(const StructureSpec& spec, const Recipe& recipe, Aspects& aspects) {
   aspects.insert({"measure " + recipe.measure, "orientation " + recipe.orientation, "builder " + recipe.builder});
+  if (recipe.measure == "VISIBLE") aspects.insert(spec.kind + ", measure VISIBLE");
+}
+
+/// What makes wide forms, where it is no tree's own measure.
+void add_wide_measure(const StructureSpec& spec, const std::string& measure, Aspects& aspects) {
+  aspects.insert("wide forms by " + measure);
+  if (measure == "VISIBLE") aspects.insert(spec.kind + ", wide forms by VISIBLE");
+}
+
+void add_tree(const StructureSpec& spec, const VerifyScene& scene, Aspects& aspects) {
+  const Recipe recipe = tree_recipe(spec, scene);
+  add_recipe(spec, recipe, aspects);
+  if (spec.reinserted) aspects.insert("reinserted by " + (spec.by_own_measure ? recipe.measure : std::string("SAH")));
+  if (spec.kind != "wide" || spec.wide_measure.empty()) return;
+  StructureSpec wide = spec;
+  wide.tree = spec.wide_measure + "+ALL";
+  add_wide_measure(spec, tree_recipe(wide, scene).measure, aspects);
+}
+
+void add_local_trees(const StructureSpec& spec, Aspects& aspects) {
+  const Recipe recipe = parse_recipe(spec.local, verify_registry(spec.seed));
+  add_recipe(spec, recipe, aspects);
+  aspects.insert(spec.ray_space ? "local trees in ray space" : "local trees");
+  if (spec.reinserted_local) aspects.insert({"local trees, reinserted", "reinserted by " + recipe.measure});
+  if (!spec.wide_measure.empty()) add_wide_measure(spec, spec.wide_measure, aspects);
+  if (!spec.area_frame.empty()) aspects.insert("local trees in ray space, frame " + spec.area_frame);
+}
+
+void add_accelerator(const StructureSpec& spec, const VerifyScene& scene, Aspects& aspects) {
+  Recipe global = parse_recipe(spec.tree, verify_registry(spec.seed));
+  if (!spec.quality.empty()) {
+    set_quality(global, parse_quality(spec.quality));
+    aspects.insert("quality " + spec.quality);
+  }
+  add_recipe(spec, global, aspects);
+  if (spec.reinserted) aspects.insert("reinserted by " + global.measure);
+  if (accelerator_areas(spec, scene).empty()) return;
+  if (spec.local_trees) add_local_trees(spec, aspects);
+  if (!spec.local_trees) aspects.insert("accelerators without local trees");
+  if (spec.traversal == "wide" && spec.covered) aspects.insert("accelerators with coverage");
 }
 
 /// What is counted for a structure whatever the rays.
-std::set<std::string> aspects_of(const StructureSpec& spec) {
-  std::set<std::string> aspects{spec.batch > 1 ? "batches" : "calls one by one"};
-  const bool is_accelerator = spec.kind == "accelerator";
-  if (spec.kind == "binary" || spec.kind == "wide" || is_accelerator) add_recipe(spec.tree, aspects);
-  if (is_accelerator && spec.areas) add_recipe(spec.local, aspects);
+Aspects aspects_of(const StructureSpec& spec, const VerifyScene& scene) {
+  Aspects aspects{spec.batch > 1 ? "batches" : "calls one by one"};
+  if (spec.kind == "binary" || spec.kind == "wide") add_tree(spec, scene, aspects);
+  if (spec.kind == "accelerator") add_accelerator(spec, scene, aspects);
   const bool has_kernels = spec.kind != "binary" && spec.traversal == "wide";
   if (has_kernels) aspects.insert({"isa " + spec.isa, spec.kind + ", isa " + spec.isa});
   if (spec.kind == "frame") aspects.insert("frame " + spec.frame);
-  if (is_accelerator && spec.areas) aspects.insert(spec.ray_space ? "local trees in ray space" : "local trees");
-  if (is_accelerator && has_kernels && spec.areas && spec.covered) aspects.insert("accelerators with coverage");
   if (spec.threads != 1) aspects.insert("several threads");
-  if (spec.reinserted) aspects.insert("reinserted");
+  if (spec.reinserted || spec.reinserted_local) aspects.insert("reinserted");
   if (spec.refitted) aspects.insert("refitted");
   if (spec.from_file) aspects.insert("read from a file");
   return aspects;
@@ -48,11 +86,11 @@ std::set<std::string> aspects_of(const StructureSpec& spec) {
 
 }  // namespace
 
-std::vector<std::string> aspects_of(const std::string& structure, RayGroupKind rays) {
+std::vector<std::string> aspects_of(const std::string& structure, const VerifyScene& scene, RayGroupKind rays) {
   try {
     const StructureSpec spec = parse_spec(structure);
     if (spec.kind == "exact") return {"exact" + text_of(rays)};
-    const std::set<std::string> aspects = aspects_of(spec);
+    const Aspects aspects = aspects_of(spec, scene);
     std::vector<std::string> result(aspects.begin(), aspects.end());
     result.push_back(spec.kind + text_of(rays));
     return result;

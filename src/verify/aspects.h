@@ -8,8 +8,9 @@
 
 namespace raygrain::verification {
 
-/// See VerifyTally::comparisons_of. Structures of users have their rays' aspect alone.
-std::vector<std::string> aspects_of(const std::string& structure, RayGroupKind rays);
+/// See VerifyTally::comparisons_of: what the structure is for this scene. Structures of users have their rays' aspect
+/// alone.
+std::vector<std::string> aspects_of(const std::string& structure, const VerifyScene& scene, RayGroupKind rays);
 
 /// What answers that say how they were found (RayAnswers::told) are counted under besides: "columns" and "cones",
 /// "coverage: batch" and "coverage: single", "accelerator: batch".

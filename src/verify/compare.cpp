@@ -37,13 +37,14 @@ uint64_t answers_told(uint8_t told) {
   return static_cast<uint64_t>(std::popcount(unsigned{told} & (RayAnswers::kNearest | RayAnswers::kAny)));
 }
 
-void count_aspects(const std::string& structure, RayGroupKind rays, std::span<const uint8_t> told, VerifyTally& tally) {
+void count_aspects(const std::string& structure, const VerifyScene& scene, RayGroupKind rays,
+                   std::span<const uint8_t> told, VerifyTally& tally) {
   std::array<uint64_t, 256> answers{};  // by how they were told
   for (const uint8_t how : told) answers[how] += answers_told(how);
   const uint64_t all = std::accumulate(answers.begin(), answers.end(), uint64_t{0});
   tally.comparisons += all;
   if (all == 0) return;
-  for (const std::string& aspect : aspects_of(structure, rays)) tally.comparisons_of[aspect] += all;
+  for (const std::string& aspect : aspects_of(structure, scene, rays)) tally.comparisons_of[aspect] += all;
   for (size_t how = 0; how < answers.size(); ++how) {
     if (answers[how] == 0) continue;
     for (const std::string& aspect : aspects_told(structure, static_cast<uint8_t>(how)))
@@ -91,7 +92,7 @@ std::optional<Difference> compare(const RayStructure& structure, const Round& ro
         if (!is_really_wrong(round, room, g, i)) what.insert(0, "the tree of reference is wrong: ");
         note({what, g, i});
       }
-      count_aspects(structure.name, group.kind, room.told, tally);
+      count_aspects(structure.name, round.scene, group.kind, room.told, tally);
     }
   } catch (const std::exception& error) {
     note({std::string("threw: ") + error.what(), 0, 0, true});

@@ -6,25 +6,29 @@
 #include "verify/ask.h"
 
 namespace raygrain::verification {
-namespace {
 
-/// DIR is about plane areas only.
-std::vector<InfluenceArea> fitting_areas(const StructureSpec& spec, const VerifyScene& scene, const Recipe& local) {
+std::vector<InfluenceArea> accelerator_areas(const StructureSpec& spec, const VerifyScene& scene) {
   std::vector<InfluenceArea> areas;
   if (!spec.areas) return areas;
+  const bool is_for_planes =
+      spec.wide_measure == "DIR" || parse_recipe(spec.local, verify_registry(spec.seed)).measure == "DIR";
   for (const InfluenceArea& area : scene.areas)
-    if (local.measure != "DIR" || std::holds_alternative<PlaneArea>(area.shape)) areas.push_back(area);
+    if (!is_for_planes || std::holds_alternative<PlaneArea>(area.shape)) areas.push_back(area);
   return areas;
 }
 
-AcceleratorOptions options_of(const StructureSpec& spec) {
+AcceleratorOptions accelerator_options(const StructureSpec& spec) {
   AcceleratorOptions options;
   options.registry = verify_registry(spec.seed);
   options.local = parse_recipe(spec.local, options.registry);
   options.global = parse_recipe(spec.tree, options.registry);
+  if (!spec.quality.empty()) options.quality = parse_quality(spec.quality);
   options.reinsert = spec.reinserted;
+  options.reinsert_local = spec.reinserted_local;
+  options.wide_measure = spec.wide_measure;
   options.traversal = spec.traversal == "binary" ? Traversal::kBinary : Traversal::kWide;
-  options.space = spec.ray_space ? LocalSpace::kRay : LocalSpace::kWorld;
+  options.space = !spec.local_trees ? LocalSpace::kNone : spec.ray_space ? LocalSpace::kRay : LocalSpace::kWorld;
+  if (!spec.area_frame.empty()) options.frame = parse_frame(spec.area_frame);
   options.isa = parse_isa(spec.isa);
   if (spec.seed % 2 == 0) options.routing = Routing::kAreas;  // else as sample rays say: often the global tree
   options.coverage = std::nullopt;
@@ -34,6 +38,8 @@ AcceleratorOptions options_of(const StructureSpec& spec) {
   options.threads = spec.threads;
   return options;
 }
+
+namespace {
 
 void answer_rays(const StructureSpec& spec, const Accelerator& scene, const RayGroup& group,
                  const RayAnswers& answers) {
@@ -73,8 +79,7 @@ void answer_shared(const StructureSpec& spec, const Accelerator& scene, const Ra
 }  // namespace
 
 AnswerRays make_accelerator(const StructureSpec& spec, const VerifyScene& scene) {
-  const AcceleratorOptions options = options_of(spec);
-  const Accelerator accelerator(*scene.mesh, fitting_areas(spec, scene, options.local), options);
+  const Accelerator accelerator(*scene.mesh, accelerator_areas(spec, scene), accelerator_options(spec));
   return [spec, accelerator](const RayGroup& group, const RayAnswers& answers) {
     if (group.kind == RayGroupKind::kMixed || spec.batch == 0) return answer_rays(spec, accelerator, group, answers);
     answer_shared(spec, accelerator, group, answers);

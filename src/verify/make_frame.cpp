@@ -10,12 +10,6 @@
 namespace raygrain::verification {
 namespace {
 
-FrameKind parse_frame(const std::string& text) {
-  for (const FrameKind kind : {FrameKind::kRotation, FrameKind::kShearX, FrameKind::kShearY, FrameKind::kShearZ})
-    if (text == name(kind)) return kind;
-  return FrameKind::kProjective;
-}
-
 /// A tree, and how far its answers reach.
 struct FrameUnderTest {
   FrameTree tree;

@@ -62,22 +62,44 @@ std::vector<Ray> samples_of(const StructureSpec& spec, const InfluenceArea* area
   return area != nullptr ? cast_rays(AreaRays{*area}, kCount, spec.seed) : std::vector<Ray>{};
 }
 
-Bvh make_tree(const StructureSpec& spec, const VerifyScene& scene) {
+Recipe tree_recipe(const StructureSpec& spec, const VerifyScene& scene) {
   const Registry registry = verify_registry(spec.seed);
   Recipe recipe = parse_recipe(spec.tree, registry);
   recipe.for_wide = spec.for_wide;
-  const InfluenceArea* area = fitting_area(spec, scene, recipe);
-  if (area == nullptr && (needs_area(recipe, registry) || needs_samples(recipe, registry)))
+  if (fitting_area(spec, scene, recipe) == nullptr && (needs_area(recipe, registry) || needs_samples(recipe, registry)))
     recipe.measure = "SAH", recipe.orientation = "ALL";
+  return recipe;
+}
+
+Bvh make_tree(const StructureSpec& spec, const VerifyScene& scene) {
+  const Registry registry = verify_registry(spec.seed);
+  const Recipe recipe = tree_recipe(spec, scene);
+  const InfluenceArea* area = fitting_area(spec, scene, recipe);
   const TriangleMesh& mesh = *scene.mesh;
   const TriangleMesh built_for = spec.refitted ? shaken(mesh, spec.seed) : mesh;
   const std::vector<Ray> samples = samples_for(recipe, registry, samples_of(spec, area), built_for);
   const ClipPrimitive clip = [&](uint32_t i, const Bounds& box) { return clip_triangle_bounds(built_for, i, box); };
-  Bvh tree = build_tree(recipe, registry, {area, samples, clip}, triangle_bounds(built_for),
-                        triangle_centroids(built_for), nullptr, {spec.threads, {}});
-  if (spec.reinserted) reinsert(tree, {}, {.threads = spec.threads});
+  const HeuristicInput input{area, samples, clip};
+  Bvh tree = build_tree(recipe, registry, input, triangle_bounds(built_for), triangle_centroids(built_for), nullptr,
+                        {spec.threads, {}});
+  if (spec.reinserted) {
+    const RayMeasure measure =
+        spec.by_own_measure ? make_build_options(recipe, registry, input).strategy.measure : RayMeasure();
+    reinsert(tree, measure, {.threads = spec.threads});
+  }
   if (spec.refitted) refit(tree, triangle_bounds(mesh));
   return spec.from_file ? through_a_file(tree) : tree;
+}
+
+RayMeasure wide_measure(const StructureSpec& spec, const VerifyScene& scene) {
+  if (spec.wide_measure.empty()) return {};
+  const Registry registry = verify_registry(spec.seed);
+  StructureSpec wide = spec;
+  wide.tree = spec.wide_measure + "+ALL";
+  const Recipe recipe = tree_recipe(wide, scene);
+  const InfluenceArea* area = fitting_area(spec, scene, recipe);
+  const std::vector<Ray> samples = samples_for(recipe, registry, samples_of(spec, area), *scene.mesh);
+  return make_build_options(recipe, registry, {area, samples}).strategy.measure;
 }
 
 }  // namespace raygrain::verification

@@ -23,7 +23,8 @@ AnswerRays make_binary(const StructureSpec& spec, const VerifyScene& scene) {
 }
 
 AnswerRays make_wide(const StructureSpec& spec, const VerifyScene& scene) {
-  const WideBvh tree(make_tree(spec, scene), *scene.mesh, {.isa = parse_isa(spec.isa), .max_leaf_size = spec.leaf});
+  const WideBvh tree(make_tree(spec, scene), *scene.mesh,
+                     {.measure = wide_measure(spec, scene), .isa = parse_isa(spec.isa), .max_leaf_size = spec.leaf});
   return [spec, tree](const RayGroup& group, const RayAnswers& answers) {
     const SearchOptions how{.prune = !spec.unpruned};
     TraceCounters counters;

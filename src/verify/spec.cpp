@@ -14,6 +14,9 @@
 namespace raygrain::verification {
 namespace {
 
+constexpr std::array kFrameKinds{FrameKind::kRotation, FrameKind::kShearX, FrameKind::kShearY, FrameKind::kShearZ,
+                                 FrameKind::kProjective};
+
 [[noreturn]] void fail(const std::string& what) {
   throw Error(ErrorCode::kUsage, "structure", what, "Take a name that raygrain verify printed");
 }
@@ -27,7 +30,9 @@ void visit_fields(Spec& s, const Visit& visit) {
   visit("areas", s.areas), visit("octree", s.octree), visit("ray_space", s.ray_space), visit("covered", s.covered);
   visit("traversal", s.traversal), visit("cells", s.cells), visit("tile", s.tile), visit("order", s.order);
   visit("batch", s.batch), visit("threads", s.threads), visit("counted", s.counted), visit("unpruned", s.unpruned);
-  visit("seed", s.seed);
+  visit("seed", s.seed), visit("by_own_measure", s.by_own_measure), visit("local_trees", s.local_trees);
+  visit("reinserted_local", s.reinserted_local), visit("wide_measure", s.wide_measure);
+  visit("area_frame", s.area_frame), visit("quality", s.quality);
 }
 
 std::string text_of(const std::string& value) {
@@ -111,11 +116,39 @@ void draw_accelerator(StructureSpec& spec, Random& random, const Registry& regis
   draw_coverage(spec, random);
 }
 
+std::string random_frame(Random& random) {
+  return name(any_of(random, kFrameKinds));
+}
+
 void draw_frame(StructureSpec& spec, Random& random) {
-  spec.frame = name(any_of(random, std::array{FrameKind::kRotation, FrameKind::kShearX, FrameKind::kShearY,
-                                              FrameKind::kShearZ, FrameKind::kProjective}));
+  spec.frame = random_frame(random);
   spec.of_area = one_in(random, 2) || spec.frame == name(FrameKind::kProjective);
   spec.spatial = one_in(random, 2);
+}
+
+std::string random_wide_measure(Random& random, const Registry& registry) {
+  if (one_in(random, 2)) return "VISIBLE";
+  return registry.measures[random.below(registry.measures.size())].name;
+}
+
+void draw_local_trees(StructureSpec& spec, Random& random, const Registry& registry) {
+  if (one_in(random, 4)) {
+    spec.local_trees = spec.ray_space = false;
+    spec.local = StructureSpec().local;
+    return;
+  }
+  spec.reinserted_local = one_in(random, 4);
+  if (spec.traversal == "wide" && one_in(random, 3)) spec.wide_measure = random_wide_measure(random, registry);
+  if (spec.ray_space && one_in(random, 2)) spec.area_frame = random_frame(random);
+}
+
+/// After all others: whatever is drawn before stays what it is for a seed.
+void draw_uses(StructureSpec& spec, Random& random, const Registry& registry) {
+  if (spec.kind == "binary" || spec.kind == "wide") spec.by_own_measure = spec.reinserted && !one_in(random, 4);
+  if (spec.kind == "wide" && one_in(random, 3)) spec.wide_measure = random_wide_measure(random, registry);
+  if (spec.kind != "accelerator") return;
+  if (one_in(random, 4)) spec.quality = any_of(random, std::array{"fast", "balanced", "best"});
+  if (spec.areas) draw_local_trees(spec, random, registry);
 }
 
 }  // namespace
@@ -135,6 +168,7 @@ StructureSpec random_spec(Random& random) {
   if (spec.kind == "coverage") draw_coverage(spec, random);
   if (spec.kind == "accelerator") draw_accelerator(spec, random, registry);
   draw_calls(spec, random);
+  draw_uses(spec, random, registry);
   return spec;
 }
 
@@ -173,6 +207,12 @@ Isa parse_isa(const std::string& text) {
   for (const Isa isa : {Isa::kScalar, Isa::kSse4, Isa::kAvx2, Isa::kAvx512, Isa::kNeon})
     if (text == name(isa)) return isa;
   fail("unknown instruction set \"" + text + "\"");
+}
+
+FrameKind parse_frame(const std::string& text) {
+  for (const FrameKind kind : kFrameKinds)
+    if (text == name(kind)) return kind;
+  fail("unknown frame \"" + text + "\"");
 }
 
 CoverageOrder parse_order(const std::string& text) {

@@ -8,8 +8,14 @@
 #include <gtest/gtest.h>
 
 #include "raygrain/error.h"
+#include "raygrain/families.h"
+#include "raygrain/refine.h"
 #include "raygrain/verify.h"
 #include "raygrain/wide.h"
+
+#include "build/build_support.h"
+#include "verify/aspects.h"
+#include "verify/spec.h"
 
 namespace raygrain {
 namespace {
@@ -74,10 +80,94 @@ TEST(RandomStructures, AreOfEveryKind) {
                                     "tree=PAH+SPFH",
                                     "local=VISIBLE+ROBIN",
                                     "local=DIR+LSPH",
-                                    "tree=SAMPLED+ALL"};
+                                    "tree=SAMPLED+ALL",
+                                    "by_own_measure=1",
+                                    "local_trees=0",
+                                    "reinserted_local=1",
+                                    "wide_measure=VISIBLE",
+                                    "wide_measure=RANDOM",
+                                    "wide_measure=DIR",
+                                    "area_frame=shear_z",
+                                    "area_frame=projective",
+                                    "quality=fast",
+                                    "quality=best"};
   for (const Isa isa : supported_isas())
     if (isa != Isa::kScalar) expected.push_back(std::string("isa=") + name(isa));
   for (const std::string& word : expected) EXPECT_EQ(words.count(word), 1u) << word;
+}
+
+using namespace verification;
+
+VerifyScene scene_with_areas() {
+  VerifyScene scene{"scene", std::make_shared<const TriangleMesh>(random_family_mesh(200, 3).mesh), {}};
+  scene.areas = {directional_light_area("sun", {0.3f, -0.9f, 0.2f}, mesh_bounds(*scene.mesh)),
+                 {"lamp", PointArea{{9, 4, 1}, {-1, 0, 0}, {0, 0, 1}, 90, 90, 0.01f, 100}}};
+  return scene;
+}
+
+TEST(RandomStructures, WordsReachTheAccelerator) {
+  const AcceleratorOptions usual = accelerator_options(parse_spec("accelerator"));
+  EXPECT_EQ(usual.space, LocalSpace::kWorld);
+  EXPECT_FALSE(usual.reinsert || usual.reinsert_local || usual.frame || usual.quality);
+  EXPECT_EQ(usual.wide_measure, "");
+  const AcceleratorOptions given = accelerator_options(
+      parse_spec("accelerator reinserted=1 reinserted_local=1 ray_space=1 area_frame=shear_x quality=best "
+                 "wide_measure=VISIBLE"));
+  EXPECT_EQ(given.space, LocalSpace::kRay);
+  EXPECT_TRUE(given.reinsert && given.reinsert_local);
+  EXPECT_EQ(given.frame, FrameKind::kShearX);
+  EXPECT_EQ(given.quality, Quality::kBest);
+  EXPECT_EQ(given.wide_measure, "VISIBLE");
+  EXPECT_EQ(accelerator_options(parse_spec("accelerator local_trees=0")).space, LocalSpace::kNone);
+  EXPECT_EQ(accelerator_areas(parse_spec("accelerator wide_measure=DIR"), scene_with_areas()).size(), 1u);
+  EXPECT_THROW(accelerator_options(parse_spec("accelerator area_frame=wood")), Error);
+}
+
+TEST(RandomStructures, AreReinsertedByTheirOwnMeasureWhereTheNameSaysSo) {
+  const VerifyScene scene = scene_with_areas();
+  const StructureSpec spec = parse_spec("binary tree=VISIBLE+ALL@binned seed=7");
+  const Bvh plain = make_tree(spec, scene);
+  const Bvh by_surface = make_tree(parse_spec("binary tree=VISIBLE+ALL@binned seed=7 reinserted=1"), scene);
+  const Bvh by_own =
+      make_tree(parse_spec("binary tree=VISIBLE+ALL@binned seed=7 reinserted=1 by_own_measure=1"), scene);
+  EXPECT_FALSE(test::same_tree(by_own, by_surface));
+  // Wide forms by VISIBLE are made by the measure that the tree of this recipe has.
+  const RayMeasure visible = wide_measure(parse_spec("wide wide_measure=VISIBLE seed=7"), scene);
+  Bvh expected = plain;
+  reinsert(expected, visible, {.threads = 1});
+  EXPECT_TRUE(test::same_tree(by_own, expected));
+  const Bounds root = plain.nodes[0].bounds;
+  EXPECT_EQ(wide_measure(parse_spec("wide"), scene)(root), surface_area_measure()(root));
+  // Its samples end at what they hit: not a constant times PAH.
+  const RayMeasure base = wide_measure(parse_spec("wide wide_measure=PAH seed=7"), scene);
+  std::set<int> ratios;
+  for (const Bvh::Node& node : plain.nodes)
+    if (base(node.bounds) > 0)
+      ratios.insert(static_cast<int>(100 * visible(node.bounds) / base(node.bounds) * base(root)));
+  EXPECT_GT(ratios.size(), 10u);
+}
+
+bool counts(const std::string& structure, const VerifyScene& scene, const std::string& aspect) {
+  return std::ranges::count(aspects_of(structure, scene, RayGroupKind::kMixed), aspect) == 1;
+}
+
+TEST(RandomStructures, AreCountedByWhatTheyAreForTheScene) {
+  const VerifyScene scene = scene_with_areas();
+  VerifyScene bare = scene;
+  bare.areas.clear();
+  EXPECT_TRUE(counts("wide tree=VISIBLE+ALL", scene, "wide, measure VISIBLE"));
+  EXPECT_FALSE(counts("wide tree=VISIBLE+ALL", bare, "measure VISIBLE"));  // there is no area to see from
+  EXPECT_TRUE(counts("wide tree=VISIBLE+ALL", bare, "measure SAH"));
+  EXPECT_TRUE(counts("wide wide_measure=VISIBLE", scene, "wide, wide forms by VISIBLE"));
+  EXPECT_FALSE(counts("wide wide_measure=VISIBLE", bare, "wide forms by VISIBLE"));
+  const std::string local = "accelerator local=VISIBLE+ALL@binned wide_measure=PAH ";
+  EXPECT_TRUE(counts(local, scene, "accelerator, measure VISIBLE"));
+  EXPECT_TRUE(counts(local, scene, "wide forms by PAH"));
+  EXPECT_FALSE(counts(local, bare, "measure VISIBLE"));
+  EXPECT_FALSE(counts(local + "local_trees=0", scene, "measure VISIBLE"));
+  EXPECT_TRUE(counts(local + "local_trees=0", scene, "accelerators without local trees"));
+  EXPECT_TRUE(counts(local + "reinserted_local=1", scene, "reinserted by VISIBLE"));
+  EXPECT_TRUE(counts("accelerator tree=PAH+ALL quality=best", bare, "builder spatial"));
 }
 
 }  // namespace

@@ -53,7 +53,8 @@ TEST(Verify, FindsNothingWrong) {
   EXPECT_EQ(by_rays, result.tally.comparisons);
   for (const char* aspect : {"wide, mixed rays", "coverage, rays to one point", "frame, rays of one direction",
                              "accelerator, rays from one point", "builder spatial", "measure VISIBLE", "batches",
-                             "columns", "cones", "coverage: single", "coverage: batch", "accelerator: batch"})
+                             "columns", "cones", "coverage: single", "coverage: batch", "accelerator: batch",
+                             "accelerators without local trees", "local trees, reinserted", "wide forms by VISIBLE"})
     EXPECT_EQ(result.tally.comparisons_of.count(aspect), 1u) << aspect;  // none is 0
 }
 
