@@ -1,4 +1,5 @@
 // Where rays are still alive.
+#include <algorithm>
 #include <memory>
 
 #include "raygrain/heuristics.h"
@@ -10,10 +11,12 @@ namespace raygrain {
 namespace {
 
 constexpr double kDoubt = 4;  // rays' worth of doubt: a box that no sample enters counts in full
+/// The least share: where boxes of any size count as nothing, splits peel off small parts and trees become deep.
+constexpr double kLeastShare = 1.0 / 16;
 
 double alive_share(const EntryGrid& grid, const Bounds& box) {
   const EntryGrid::Counts entering = grid.entering(box);
-  return (entering.alive + kDoubt) / (entering.all + kDoubt);
+  return std::max((entering.alive + kDoubt) / (entering.all + kDoubt), kLeastShare);
 }
 
 }  // namespace
