@@ -26,9 +26,9 @@ RayMeasure sampled_measure(std::span<const Ray> rays);
 
 /// `base`, times the share of the sample rays through a box that are still alive where they enter it: rays stop at
 /// their first hit, so what opaque surfaces hide costs little. After Vinkler, Havran and Sochor, "Visibility driven BVH
-/// build up algorithm for ray tracing" (2012); the share is counted on a grid over all that the rays see and is at least
-/// 1/16. `rays` end (tmax) where they hit, see end_at_hits; a few thousand do. Where none ends, nothing is hidden and
-/// the result is `base`. Total = that of `base`.
+/// build up algorithm for ray tracing" (2012); the share is counted on a grid over all that the rays see and is at
+/// least 1/16. `rays` end (tmax) where they hit, see end_at_hits; a few thousand do. Where none ends, nothing is hidden
+/// and the result is `base`. Total = that of `base`.
 RayMeasure visible_measure(const RayMeasure& base, std::span<const Ray> rays);
 
 /// LSPH: quality = extent / longest extent.
