@@ -173,7 +173,7 @@ Action declare_explain(Arguments& arguments) {
   add_ray_options(arguments, options->rays);
   arguments.flag("--any", options->any, "Ask whether these rays hit anything, not for their nearest hits");
   add_area_options(arguments, options->areas);
-  add_structure_options(arguments, options->structures);
+  add_structure_options(arguments, options->structures, Routing::kCheapest);
   arguments.text("--quality", "NAME", options->quality, "Of the tree for all other rays: fast, balanced or best");
   add_common(arguments, options->common);
   arguments.footer("With --rays or --set it also says which of these rays, as one array, each area answers.");

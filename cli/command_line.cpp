@@ -27,7 +27,7 @@ constexpr Command kCommands[] = {
     {"study", "Run the paper's evaluation, or a grid of experiments of one's own", declare_study},
     {"build", "Build one tree and write it as a tree file or as JSON", declare_build},
     {"analyze", "Print all metrics of one tree", declare_analyze},
-    {"trace", "Find the nearest hits of rays from a file", declare_trace},
+    {"trace", "Find nearest or any hits of given rays, and check them", declare_trace},
     {"explain", "Say what influence areas cost, what they save, and after how many rays they pay", declare_explain},
     {"refit", "Fit a tree file to vertices that moved", declare_refit},
     {"report", "Draw the results of studies as a page of charts", declare_report},

@@ -1,7 +1,7 @@
-// raygrain trace: the nearest hits of given rays, through local trees and the global one.
+// raygrain trace: nearest or any hits of given rays, through what areas have and the global tree.
 #include <algorithm>
-#include <functional>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -10,16 +10,15 @@
 #include "raygrain/compare.h"
 #include "raygrain/error.h"
 #include "raygrain/io.h"
-#include "raygrain/report.h"
 
-#include "base/parallel.h"
-#include "base/timer.h"
 #include "cli/areas.h"
+#include "cli/asked_rays.h"
 #include "cli/commands.h"
 #include "cli/environment_json.h"
 #include "cli/given_rays.h"
 #include "cli/memory.h"
 #include "cli/open_scene.h"
+#include "cli/structures.h"
 #include "cli/tree_file.h"
 #include "cli/values.h"
 
@@ -29,24 +28,19 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+constexpr const char* kDefaultLocal = "PAH+ALL@binned";
 constexpr const char* kDefaultGlobal = "SAH+ALL@binned";
 
 struct Options {
   CommonOptions common;
   AreaOptions areas;
   RayOptions rays;
+  StructureOptions structures;
   std::string scene, output;
-  std::string local = "PAH+ALL@binned", global = kDefaultGlobal;
+  std::string local = kDefaultLocal, global = kDefaultGlobal;
   std::string quality, tree, traversal = "wide";
   std::string wide_measure;
-  bool verify = false, reinsert = false, reinsert_local = false;
-};
-
-struct Traced {
-  std::vector<Hit> hits;
-  AcceleratorCounters counters;
-  size_t hit_count = 0, mismatches = 0;
-  double seconds = 0;
+  bool any = false, verify = false, reinsert = false, reinsert_local = false;
 };
 
 AcceleratorOptions accelerator_options(const Options& options) {
@@ -70,6 +64,7 @@ AcceleratorOptions accelerator_options(const Options& options) {
                "Leave one of them out");
   result.traversal = options.traversal == "wide" ? Traversal::kWide : Traversal::kBinary;
   result.routing = Routing::kAreas;  // whoever names a recipe wants to see its trees searched
+  set_structures(options.structures, result);
   result.threads = options.common.thread_count();
   Recipe wide = result.local;
   if (!options.wide_measure.empty()) wide.measure = options.wide_measure;
@@ -80,38 +75,11 @@ AcceleratorOptions accelerator_options(const Options& options) {
   return result;
 }
 
-using Tell = std::function<void(double done)>;
-
-/// In large pieces, so that progress can be told between them.
-Traced trace_all(const Accelerator& accelerator, std::span<const Ray> rays, unsigned threads, const Tell& tell) {
-  constexpr size_t kPiece = 65536;
-  Traced traced;
-  traced.hits.resize(rays.size());
-  const Timer timer;
-  for (size_t start = 0; start < rays.size(); start += kPiece) {
-    tell(static_cast<double>(start) / static_cast<double>(rays.size()));
-    const size_t count = std::min(kPiece, rays.size() - start);
-    accelerator.intersect(rays.subspan(start, count), std::span(traced.hits).subspan(start, count), threads,
-                          &traced.counters);
-  }
-  traced.seconds = timer.seconds();
-  for (const Hit& hit : traced.hits) traced.hit_count += is_hit(hit) ? 1 : 0;
-  return traced;
-}
-
-/// Brute force is slow: small pieces.
-size_t count_wrong(const TriangleMesh& mesh, std::span<const Ray> rays, std::span<const Hit> hits, unsigned threads,
-                   const Tell& tell) {
-  constexpr size_t kPiece = 256;
-  std::vector<uint8_t> wrong(rays.size());
-  for (size_t start = 0; start < rays.size(); start += kPiece) {
-    tell(static_cast<double>(start) / static_cast<double>(rays.size()));
-    parallel_for(std::min(kPiece, rays.size() - start), 8, threads, [&](size_t begin, size_t end) {
-      for (size_t i = start + begin; i < start + end; ++i) wrong[i] = intersect_reference(mesh, rays[i]) != hits[i];
-    });
-  }
-  return static_cast<size_t>(std::count(wrong.begin(), wrong.end(), 1));
-}
+struct Traced {
+  size_t rays = 0;
+  RayAnswers answers;
+  std::optional<CheckedAnswers> checked;
+};
 
 Json work(const TraceCounters& c) {
   return {{"inner_hits", c.inner_hits},
@@ -121,14 +89,34 @@ Json work(const TraceCounters& c) {
           {"triangle_tests", c.triangle_tests}};
 }
 
+/// A ray, or a search of a local tree, by who answered it.
+Json ways(const AcceleratorCounters& c) {
+  return {{"covered", c.covered},
+          {"columns", c.columns},
+          {"cones", c.cones},
+          {"local_searches", c.local_searches},
+          {"global_searches", c.global_searches}};
+}
+
+Json checked_json(const CheckedAnswers& checked) {
+  Json rows = Json::array();
+  for (const CheckedQuestion& q : checked.questions) {
+    Json row{{"question", name(q.question)}};
+    row.update(ways(q.counters));
+    row["differences"] = q.differences;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
 std::string trace_json(const Options& options, const Scene& scene, const Traced& traced) {
-  const AcceleratorCounters& c = traced.counters;
+  const AcceleratorCounters& c = traced.answers.counters;
   Json report{{"scene", scene.name},
               {"triangles", scene.mesh.triangle_count()},
               {"environment", environment_json(options.common.thread_count())},
-              {"rays", traced.hits.size()},
-              {"hits", traced.hit_count},
-              {"trace_seconds", traced.seconds},
+              {"rays", traced.rays},
+              {"hits", traced.answers.hit_count()},
+              {"trace_seconds", traced.answers.seconds},
               {"counters",
                {{"invalid_rays", c.invalid_rays},
                 {"covered", c.covered},
@@ -142,28 +130,45 @@ std::string trace_json(const Options& options, const Scene& scene, const Traced&
                 {"global_searches", c.global_searches},
                 {"local", work(c.local)},
                 {"global", work(c.global)}}}};
-  if (options.verify) report["mismatches"] = traced.mismatches;
+  if (traced.checked) {
+    report["mismatches"] = traced.checked->wrong;
+    report["checked"] = checked_json(*traced.checked);
+  }
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-std::string trace_text(const Options& options, const Scene& scene, size_t areas, const Traced& traced) {
-  const AcceleratorCounters& c = traced.counters;
+std::string checked_text(const CheckedAnswers& checked) {
+  std::string text = fmt::format("\n{:<24} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "by brute force", "coverage",
+                                 "columns", "cones", "other local", "global", "differences");
+  for (const CheckedQuestion& q : checked.questions) {
+    const AcceleratorCounters& c = q.counters;
+    text += fmt::format("{:<24} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", name(q.question), c.covered, c.columns,
+                        c.cones, c.local_searches - c.columns - c.cones, c.global_searches, q.differences);
+  }
+  return text;
+}
+
+std::string trace_text(const Scene& scene, size_t areas, const Traced& traced) {
+  const AcceleratorCounters& c = traced.answers.counters;
   std::string text = fmt::format("{}: {} triangles, {} areas\n", scene.name, scene.mesh.triangle_count(), areas);
   const auto line = [&](const char* name, uint64_t value) { text += fmt::format("  {:<36} {:>12}\n", name, value); };
-  line("rays", traced.hits.size());
-  line("hits", traced.hit_count);
+  line("rays", traced.rays);
+  line("hits", traced.answers.hit_count());
   line("invalid rays (misses)", c.invalid_rays);
   line("answered by the coverage of an area", c.covered);
   line("areas asked", c.areas_tested);
   line("areas that serve", c.areas_serving);
   line("searches of local trees", c.local_searches);
+  line("... in ray space, as columns", c.columns);
+  line("... in ray space, as cones", c.cones);
   line("hits accepted from local trees", c.local_hits);
   line("searches that went on in a next area", c.continued);
   line("searches of the global tree", c.global_searches);
   line("boxes tested", c.local.box_tests + c.global.box_tests);
   line("triangles tested", c.local.triangle_tests + c.global.triangle_tests);
-  if (options.verify) line("differences from brute force", traced.mismatches);
-  return text;
+  if (!traced.checked) return text;
+  line("differences from brute force", traced.checked->wrong);
+  return text + checked_text(*traced.checked);
 }
 
 void check_options(const Options& options) {
@@ -173,6 +178,9 @@ void check_options(const Options& options) {
                "They say how a new tree is built");
   if (!options.tree.empty() && (options.reinsert_local || !options.wide_measure.empty()))
     fail_usage("--tree", "cannot be combined with --reinsert-local or --wide-measure", "Leave one of them out");
+  const std::string structure = given_structure_option(options.structures);
+  if (!options.tree.empty() && !structure.empty())
+    fail_usage("--tree", "cannot be combined with " + structure, "Beside a built tree areas have trees of the world");
   check_ray_options(options.rays);
   if (!options.rays.is_given()) fail_usage("--rays", "no rays are given", kRaysHint);
 }
@@ -206,13 +214,23 @@ Traced trace_and_verify(const Options& options, const Scene& scene, const std::v
   require_memory("tracing", bytes_of_accelerator(scene.mesh, areas, build),
                  "Take --quality fast, a smaller scene or fewer areas");
   const Accelerator accelerator = make_accelerator(options, scene, areas, build);
-  Traced traced = trace_all(accelerator, rays, threads,
-                            [&](double done) { progress.show("trace rays", built + done * (traced_share - built)); });
+  Traced traced{rays.size(),
+                ask_rays(accelerator, rays, options.any, threads,
+                         [&](double done) { progress.show("trace rays", built + done * (traced_share - built)); }),
+                {}};
   if (!options.verify) return traced;
-  traced.mismatches = count_wrong(scene.mesh, rays, traced.hits, threads, [&](double done) {
+  traced.checked = check_answers(accelerator, rays, traced.answers, threads, [&](double done) {
     progress.show("search by brute force", traced_share + done * (1 - traced_share));
   });
   return traced;
+}
+
+/// One column: 1 where the ray hits anything.
+void save_flags(std::span<const uint8_t> flags, const std::string& path) {
+  write_file_atomically(path, [&](std::ostream& out) {
+    out << "occluded\n";
+    for (const uint8_t flag : flags) out << (flag != 0 ? "1\n" : "0\n");
+  });
 }
 
 int trace(const Options& options) {
@@ -225,14 +243,17 @@ int trace(const Options& options) {
   const std::vector<InfluenceArea> areas = choose_areas(options.areas, scene, output);
   const std::vector<Ray> rays = given_rays(options.rays, scene);
 
-  Traced traced = trace_and_verify(options, scene, areas, rays, progress);
-  save_hits(traced.hits, options.output);
+  const Traced traced = trace_and_verify(options, scene, areas, rays, progress);
+  if (options.any)
+    save_flags(traced.answers.flags, options.output);
+  else
+    save_hits(traced.answers.hits, options.output);
   progress.erase();
   output.save_json(trace_json(options, scene, traced));
-  output.print(trace_text(options, scene, areas.size(), traced));
+  output.print(trace_text(scene, areas.size(), traced));
   output.note("Written:\n  " + options.output + "\n");
-  if (traced.mismatches == 0) return kSuccess;
-  throw Error(ErrorCode::kLimit, options.output, fmt::format("{} rays GOT WRONG HITS", traced.mismatches),
+  if (!traced.checked || traced.checked->wrong == 0) return kSuccess;
+  throw Error(ErrorCode::kLimit, options.output, fmt::format("{} rays GOT WRONG ANSWERS", traced.checked->wrong),
               "This is a defect of raygrain: do not use these results, and please report it");
 }
 
@@ -242,8 +263,12 @@ Action declare_trace(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   arguments.operand("SCENE", options->scene, kSceneHelp);
   add_ray_options(arguments, options->rays);
-  arguments.output("-o,--output", "HITS.csv", options->output, "Hits: columns t,u,v,triangle; a miss is inf,0,0,-1");
+  arguments.flag("--any", options->any, "Ask whether these rays hit anything, not for their nearest hits");
+  arguments.output("-o,--output", "HITS.csv", options->output,
+                   "Hits: columns t,u,v,triangle, a miss is inf,0,0,-1; with --any one column, 1 for a hit");
   arguments.require("--output");
+  arguments.flag("--verify", options->verify,
+                 "Ask any hits and nearest hits, together and one by one, and check all against brute force (slow)");
   add_area_options(arguments, options->areas);
   arguments.group("Trees");
   arguments.text("--local", "RECIPE", options->local, "Recipe of each area's tree [PAH+ALL@binned]");
@@ -256,7 +281,7 @@ Action declare_trace(Arguments& arguments) {
                  "What makes the wide forms of the areas' trees, e.g. VISIBLE [their recipe's]");
   arguments.file("--tree", "FILE.rgt", options->tree, "A built tree of the whole scene in place of that tree");
   arguments.text("--traversal", "NAME", options->traversal, "Form of the trees: wide, or binary (slower) [wide]");
-  arguments.flag("--verify", options->verify, "Check every hit against brute force (slow)");
+  add_structure_options(arguments, options->structures, Routing::kAreas);
   add_common(arguments, options->common);
   return [options] { return trace(*options); };
 }

@@ -10,12 +10,16 @@
 namespace raygrain::cli {
 
 struct StructureOptions {
-  std::string space = "world";
+  std::string space = "world", frame, routing;  // no routing: the command's own
+  bool no_coverage = false;
 };
-/// Under a title of their own.
-void add_structure_options(Arguments& arguments, StructureOptions& options);
+/// Under a title of their own. `usual` is what the command does without --routing.
+void add_structure_options(Arguments& arguments, StructureOptions& options, Routing usual);
 
-/// Throws Error (kUsage). Needs no scene, so it can come first.
+/// The first of these options that is given, with a value that changes anything; "" without any.
+std::string given_structure_option(const StructureOptions& options);
+
+/// Sets what is given in `result`, whose traversal is set. Throws Error (kUsage). Needs no scene, so it can come first.
 void set_structures(const StructureOptions& options, AcceleratorOptions& result);
 
 }  // namespace raygrain::cli
