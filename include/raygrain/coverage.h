@@ -85,12 +85,14 @@ class Coverage {
 
   /// Answers what it can of the rays (origins[i], direction), tmin 0, tmax infinite, against the light's direction;
   /// appends the numbers of the others to `rest`, ascending. `subset` (ascending numbers; empty: all) chooses rays.
-  /// 0 threads = all.
+  /// 0 threads = all. Throws Error: kUsage unless there is an answer's room for each origin and `subset` names origins
+  /// alone, kLimit for 2^32 rays or more.
   void occluded(std::span<const Vec3> origins, Vec3 direction, std::span<uint8_t> flags, std::vector<uint32_t>& rest,
                 std::span<const uint32_t> subset = {}, unsigned threads = 1,
                 CoverageCounters* counters = nullptr) const;
 
-  /// The same for rays from the origins to the area's eye: direction float32(point - origin), tmin 0, tmax 1.
+  /// The same for rays from the origins to the area's eye: direction float32(point - origin), tmin 0, tmax 1. Same
+  /// errors, here and below.
   void occluded_towards(std::span<const Vec3> origins, Vec3 point, std::span<uint8_t> flags,
                         std::vector<uint32_t>& rest, std::span<const uint32_t> subset = {}, unsigned threads = 1,
                         CoverageCounters* counters = nullptr) const;
@@ -106,13 +108,16 @@ class Coverage {
                       CoverageCounters* counters = nullptr) const;
 
   /// Of several coverages with the same eye, lists for each the points (or directions) that are in its window, every
-  /// one in one list at most, ascending; appends the numbers of the others to `rest`. 0 threads = all.
+  /// one in one list at most, ascending; appends the numbers of the others to `rest`. 0 threads = all. Throws Error:
+  /// kUsage unless there are 1 ... 254 coverages, kLimit for 2^32 points or more.
   static std::vector<std::vector<uint32_t>> divide(std::span<const Coverage* const> coverages,
                                                    std::span<const Vec3> points, bool are_directions,
                                                    std::vector<uint32_t>& rest, unsigned threads = 1);
 
   size_t cell_count() const;
-  size_t memory_bytes() const;
+  size_t memory_bytes() const;  // cells, tiles, triangles as they are tested, and references to them; not the mesh
+  /// By the clock, on the threads that built it; of one of of_areas beside others', with an equal part of what they
+  /// share.
   double build_seconds() const;
 
  private:

@@ -23,7 +23,7 @@ class TriangleCorners {
  public:
   explicit TriangleCorners(const TriangleMesh& mesh);
 
-  size_t size() const { return corners_.size(); }
+  size_t size() const { return corners_.size(); }  // triangles; ids are below it
   const std::array<Vec3, 3>& at_id(uint32_t triangle) const { return corners_[triangle]; }
   size_t memory_bytes() const { return corners_.size() * sizeof(corners_[0]); }
 
@@ -46,9 +46,10 @@ class FrameTree {
  public:
   FrameTree();  // empty: every ray misses
 
-  /// Collapses `tree`, built over frame_bounds of triangles: its prims are triangle ids. The same
-  /// tree gives the same bytes. Throws Error: kUsage for options out of range, an instruction set that this CPU lacks,
-  /// or a tree that reaches beyond 2^30 in the frame or is smaller than 2^-30; otherwise as WideBvh.
+  /// Collapses `tree`, built over frame_bounds of triangles: its prims are triangle ids. The same tree gives the same
+  /// bytes. Throws Error: kUsage for options out of range, an instruction set that this CPU lacks, no corners, an id
+  /// that they do not have, or a tree that reaches beyond 2^30 in the frame or is smaller than 2^-30; kBadHeuristic for
+  /// a measure that is negative or not finite; kLimit beyond 2^33 bytes.
   FrameTree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<const TriangleCorners> corners,
             const WideOptions& options = {});
 
@@ -91,7 +92,9 @@ struct FrameBuildOptions {
 
 /// Builds the tree over these triangles (ids), as far as they lie in the frame's domain. Nothing where a tree in
 /// this frame cannot be made (see FrameTree). `cost` gets the estimated cost of all rays of the distribution, up to a
-/// factor that does not depend on the frame: less is better.
+/// factor that does not depend on the frame: less is better. Throws Error: kUsage for no corners, an id that they do
+/// not have, an instruction set that this CPU lacks, weights or a z term that are negative or not finite, weights.z =
+/// 0, and weights that are no float multiples of weights.z; kLimit beyond 2^33 bytes.
 std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr<const TriangleCorners> corners,
                                           std::span<const uint32_t> triangles, const FrameBuildOptions& options = {},
                                           double* cost = nullptr);

@@ -37,8 +37,9 @@ struct RayFrame {
   bool is_projective() const { return kind == FrameKind::kProjective; }
 };
 
-/// A frame for parallel rays along `direction` (not zero) and things near `center`. Nothing for a shear whose axis is
-/// more than 84 degrees away from the direction, and for kProjective.
+/// A frame for parallel rays along `direction` and things near `center`. Nothing for a shear whose axis is more than 84
+/// degrees away from the direction, and for kProjective. Throws Error (kUsage) for a direction that is zero, and where
+/// something is not finite.
 std::optional<RayFrame> parallel_frame(FrameKind kind, Vec3 direction, Vec3 center);
 
 /// The frame of an influence area; its domain holds the area's region with all slack, and goes on beyond its far face
@@ -104,7 +105,7 @@ double drift(const FrameSegment& segment);
 
 /// Face weights (for face_weight_measure, in the frame) of parallel rays of these directions, equally dense across
 /// each: w_k = E|(Mv)_k| |det M^-1| with v of unit length. Exact in rotations and shears; throws Error (kUsage) for
-/// projective frames and for no directions.
+/// projective frames, for no directions, and for a direction that is zero or not finite.
 Vec3d frame_face_weights(const RayFrame& frame, std::span<const Vec3> directions);
 
 /// Face weights (E|slope_x|, E|slope_y|, 1) of sample rays in the frame: what replaces E|v| for rays near a point,

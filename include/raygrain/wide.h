@@ -51,8 +51,8 @@ class WideBvh {
   WideBvh();  // empty: every ray misses
 
   /// Collapses `tree`, whose prims are triangle ids of `mesh`; neither is kept. The same tree gives the same bytes.
-  /// Throws Error: kUsage for options out of range or an instruction set that this CPU lacks, kBadHeuristic for a
-  /// measure that is negative or not finite, kLimit beyond 2^43 bytes.
+  /// Throws Error: kUsage for options out of range, an instruction set that this CPU lacks, or an id that the mesh does
+  /// not have; kBadHeuristic for a measure that is negative or not finite; kLimit beyond 2^43 bytes.
   WideBvh(const Bvh& tree, const TriangleMesh& mesh, const WideOptions& options = {});
 
   /// Nearest hit by (t, id), merged with `known`. SearchOptions::prune = false visits everything that the ray meets.

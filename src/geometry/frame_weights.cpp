@@ -46,6 +46,8 @@ Vec3d frame_face_weights(const RayFrame& frame, std::span<const Vec3> directions
                 directions.empty() ? "" : "Use frame_slope_weights");
   Vec3d sum;
   for (const Vec3 direction : directions) {
+    if (direction == Vec3{} || !is_finite(direction))
+      throw Error(ErrorCode::kUsage, "frame_face_weights", "a direction is zero or not finite");
     const Vec3d v = normalized(to_double(direction));
     for (size_t k = 0; k < 3; ++k) sum[static_cast<int>(k)] += std::abs(dot(frame.rows[k], v));
   }

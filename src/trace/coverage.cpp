@@ -43,6 +43,12 @@ size_t bytes_of(const CoverageGrid& grid) {
          grid.near_triangles.capacity() * sizeof(uint32_t);
 }
 
+void check_call(size_t rays, size_t answers, std::span<const uint32_t> subset) {
+  check_sizes("Coverage", rays, answers);
+  if (rays > 0xffffffffu) throw Error(ErrorCode::kLimit, "Coverage", "2^32 rays or more in one call");
+  check_numbers("Coverage", subset, rays, "rays");
+}
+
 void pass_on(size_t count, std::span<const uint32_t> subset, std::vector<uint32_t>& rest) {
   if (!subset.empty()) return void(rest.insert(rest.end(), subset.begin(), subset.end()));
   for (size_t i = 0; i < count; ++i) rest.push_back(static_cast<uint32_t>(i));
@@ -78,7 +84,6 @@ template <class Ask>
 void in_parts(const CoverageGrid& grid, CoverageOrder order, const ColumnRays& rays, size_t points,
               std::span<const uint32_t> subset, std::vector<uint32_t>& rest, unsigned threads,
               CoverageCounters* counters, const Ask& ask) {
-  if (points > 0xffffffffu) throw Error(ErrorCode::kLimit, "Coverage", "more than 2^32 rays in one call");
   const size_t count = subset.empty() ? points : subset.size();
   if (count == 0) return;
   BatchPlan plan = plan_batch(grid, order, count, threads);
@@ -132,6 +137,7 @@ Coverage::Coverage() : data_(std::make_shared<const Data>()) {}
 
 struct Coverage::Shared {
   MeshNeighbours neighbours;
+  double seconds;  // each area's part of the time that they took
 };
 
 Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea& area, const CoverageOptions& options)
@@ -150,7 +156,7 @@ Coverage::Coverage(std::shared_ptr<const TriangleMesh> mesh, const InfluenceArea
   Data data{build_coverage(std::move(mesh), AreaGeometry(area), density,
                            shared != nullptr ? &shared->neighbours : nullptr, options.threads),
             isa, &coverage_kernels(isa), options.order, 0};
-  data.seconds = timer.seconds();
+  data.seconds = timer.seconds() + (shared != nullptr ? shared->seconds : 0);
   data_ = std::make_shared<const Data>(std::move(data));
 }
 
@@ -159,7 +165,9 @@ std::vector<Coverage> Coverage::of_areas(std::shared_ptr<const TriangleMesh> mes
   if (mesh == nullptr) throw Error(ErrorCode::kUsage, "mesh", "is missing");
   std::vector<Coverage> coverages(areas.size());
   if (areas.empty()) return coverages;
-  const Shared shared{find_neighbours(*mesh)};
+  const Timer timer;
+  Shared shared{find_neighbours(*mesh), 0};
+  shared.seconds = timer.seconds() / static_cast<double>(areas.size());
   parallel_for(areas.size(), 1, options.threads, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) coverages[i] = Coverage(mesh, areas[i], options, &shared);
   });
@@ -197,7 +205,7 @@ bool Coverage::is_useful() const {
 void Coverage::occluded(std::span<const Vec3> origins, Vec3 direction, std::span<uint8_t> flags,
                         std::vector<uint32_t>& rest, std::span<const uint32_t> subset, unsigned threads,
                         CoverageCounters* counters) const {
-  check_sizes("Coverage", origins.size(), flags.size());
+  check_call(origins.size(), flags.size(), subset);
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != 1) return pass_on(origins.size(), subset, rest);
   in_parts(grid, data_->order, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
@@ -209,7 +217,7 @@ void Coverage::occluded(std::span<const Vec3> origins, Vec3 direction, std::span
 void Coverage::occluded_towards(std::span<const Vec3> origins, Vec3 point, std::span<uint8_t> flags,
                                 std::vector<uint32_t>& rest, std::span<const uint32_t> subset, unsigned threads,
                                 CoverageCounters* counters) const {
-  check_sizes("Coverage", origins.size(), flags.size());
+  check_call(origins.size(), flags.size(), subset);
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || !grid.map.is_eye || point != grid.map.center) return pass_on(origins.size(), subset, rest);
   in_parts(grid, data_->order, {ColumnRays::Kind::kTowards, point, origins.data()}, origins.size(), subset, rest,
@@ -221,7 +229,7 @@ void Coverage::occluded_towards(std::span<const Vec3> origins, Vec3 point, std::
 void Coverage::intersect(std::span<const Vec3> origins, Vec3 direction, std::span<Hit> hits,
                          std::vector<uint32_t>& rest, std::span<const uint32_t> subset, unsigned threads,
                          CoverageCounters* counters) const {
-  check_sizes("Coverage", origins.size(), hits.size());
+  check_call(origins.size(), hits.size(), subset);
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || grid.map.is_eye || sense_of(grid, direction) != -1) return pass_on(origins.size(), subset, rest);
   in_parts(grid, data_->order, {ColumnRays::Kind::kAlong, direction, origins.data()}, origins.size(), subset, rest,
@@ -233,7 +241,7 @@ void Coverage::intersect(std::span<const Vec3> origins, Vec3 direction, std::spa
 void Coverage::intersect_from(Vec3 eye, std::span<const Vec3> directions, std::span<Hit> hits,
                               std::vector<uint32_t>& rest, std::span<const uint32_t> subset, unsigned threads,
                               CoverageCounters* counters) const {
-  check_sizes("Coverage", directions.size(), hits.size());
+  check_call(directions.size(), hits.size(), subset);
   const CoverageGrid& grid = data_->grid;
   if (!is_useful() || !grid.map.is_eye || eye != grid.map.center) return pass_on(directions.size(), subset, rest);
   in_parts(grid, data_->order, {ColumnRays::Kind::kFrom, eye, directions.data()}, directions.size(), subset, rest,

@@ -7,6 +7,7 @@
 #include "raygrain/frame_tree.h"
 
 #include "base/parallel.h"
+#include "base/sizes.h"
 #include "build/estimate.h"
 
 namespace raygrain {
@@ -44,7 +45,10 @@ Vec3 weights_of(const FrameBuildOptions& options, const Bounds& scene) {
   const double across = std::sqrt(static_cast<double>(size.x) * static_cast<double>(size.y));
   const double term = size.z > 0 ? static_cast<double>(options.z_term) * across / static_cast<double>(size.z) : 0;
   const Vec3d w = options.weights / options.weights.z;
-  return to_float(Vec3d{w.x + term, w.y + term, 1});
+  const Vec3 weights = to_float(Vec3d{w.x + term, w.y + term, 1});
+  if (!is_finite(weights))
+    throw Error(ErrorCode::kUsage, "FrameBuildOptions", "the weights' relation to weights.z is beyond float");
+  return weights;
 }
 
 constexpr uint32_t kMostFrameTriangles = 16;  // in a leaf
@@ -62,8 +66,12 @@ std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr
                                           std::span<const uint32_t> triangles, const FrameBuildOptions& options,
                                           double* cost) {
   if (corners == nullptr) throw Error(ErrorCode::kUsage, "build_frame_tree", "has no corners");
-  if (!(options.weights.x >= 0 && options.weights.y >= 0 && options.weights.z > 0 && options.z_term >= 0))
-    throw Error(ErrorCode::kUsage, "FrameBuildOptions", "weights and z_term must not be negative, nor weights.z zero");
+  check_numbers("build_frame_tree", triangles, corners->size(), "triangles");
+  const auto is_good = [](double term) { return term >= 0 && std::isfinite(term); };
+  const auto [x, y, z] = options.weights;
+  if (!(is_good(x) && is_good(y) && is_good(z) && z > 0 && is_good(static_cast<double>(options.z_term))))
+    throw Error(ErrorCode::kUsage, "FrameBuildOptions",
+                "weights and z_term must be finite and not negative, weights.z not zero");
   FramePrimitives primitives = primitives_in(frame, *corners, triangles, options.threads);
   Bounds scene;
   for (const Bounds& box : primitives.bounds) scene.extend(box.lo), scene.extend(box.hi);

@@ -6,6 +6,7 @@
 
 #include "raygrain/error.h"
 
+#include "base/sizes.h"
 #include "trace/frame_memory.h"
 #include "trace/kernels/frame_kernels.h"
 
@@ -50,6 +51,7 @@ FrameTree::FrameTree(const RayFrame& frame, const Bvh& tree, std::shared_ptr<con
   const Isa isa = options.isa ? *options.isa : default_isa();
   const FrameKernels& table = kernels_of(isa);
   if (corners == nullptr) throw Error(ErrorCode::kUsage, "FrameTree", "has no corners");
+  check_numbers("FrameTree", tree.prims, corners->size(), "triangles");
   data_ = std::make_shared<const Data>(Data{write_frame_tree(frame, tree, std::move(corners), options), isa, &table});
 }
 

@@ -35,6 +35,7 @@ WideBvh::WideBvh() : data_(std::make_shared<const Data>()) {}
 WideBvh::WideBvh(const Bvh& tree, const TriangleMesh& mesh, const WideOptions& options) {
   const Isa isa = options.isa ? *options.isa : default_isa();
   const Kernels& table = kernels_of(isa);
+  check_numbers("WideBvh", tree.prims, mesh.triangle_count(), "triangles");
   data_ = std::make_shared<const Data>(Data{collapse(tree, mesh, options), isa, &table});
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -171,6 +172,9 @@ TEST(FrameWeights, NeedAFrameOfTheirKind) {
   const RayFrame turned = *area_frame(FrameKind::kRotation, sun), seen = *area_frame(FrameKind::kProjective, lamp);
   EXPECT_THROW(frame_face_weights(seen, std::vector{Vec3{0, 0, 1}}), Error);
   EXPECT_THROW(frame_face_weights(turned, {}), Error);
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const Vec3 bad : {Vec3{}, Vec3{0, nan, 1}, Vec3{kInf, 0, 0}})
+    EXPECT_THROW(frame_face_weights(turned, std::vector{Vec3{0, 0, 1}, bad}), Error);
   EXPECT_THROW(frame_area_weights(seen, sun), Error);
   EXPECT_THROW(frame_area_weights(turned, lamp), Error);
 }

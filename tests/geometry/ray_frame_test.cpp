@@ -204,6 +204,8 @@ TEST(RayFrame, ShearsNeedTheirAxis) {
   EXPECT_TRUE(parallel_frame(FrameKind::kRotation, {0.05f, -1, 0.2f}, {}).has_value());
   EXPECT_FALSE(parallel_frame(FrameKind::kProjective, {0.05f, -1, 0.2f}, {}).has_value());
   EXPECT_THROW(parallel_frame(FrameKind::kRotation, {0, 0, 0}, {}), Error);
+  EXPECT_THROW(parallel_frame(FrameKind::kShearY, {0, kInf, 0}, {}), Error);
+  EXPECT_THROW(parallel_frame(FrameKind::kRotation, {0, 1, 0}, {kInf, 0, 0}), Error);
 }
 
 }  // namespace
