@@ -13,6 +13,7 @@
 #include "cli/commands.h"
 #include "cli/open_scene.h"
 #include "cli/output.h"
+#include "cli/output_folder.h"
 #include "cli/signals.h"
 #include "cli/values.h"
 
@@ -89,6 +90,7 @@ int verify_answers(const Options& options) {
   const Output output(options.common);
   Progress progress(!options.common.quiet);
   const VerifyOptions how = verify_options(options, progress);
+  const OutputFolder folder(options.folder);  // before hours of work, not after them
   finish_on_interrupt();
   const VerifyResult result = verify(how);
   progress.erase();
