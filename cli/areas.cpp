@@ -15,17 +15,6 @@ namespace {
 constexpr float kDefaultFieldOfView = 60, kDefaultAspect = 1.5f;
 constexpr float kWidestAspect = 100;
 
-/// Values of an option are the user's words: what is wrong with them is a matter of usage, named after the option.
-template <class Make>
-auto from_option(const std::string& option, const Make& make) {
-  try {
-    return make();
-  } catch (const Error& error) {
-    if (error.code != ErrorCode::kBadArea) throw;
-    throw Error(ErrorCode::kUsage, option, error.message, error.hint);
-  }
-}
-
 void check_sun(Vec3 direction) {
   if (direction == Vec3{})
     fail_usage("--sun", "0,0,0 is no direction",
@@ -38,13 +27,15 @@ void check_camera(const std::pair<Vec3, Vec3>& camera) {
 }
 
 std::vector<InfluenceArea> given_areas(const AreaOptions& options, const Scene& scene) {
+  constexpr ErrorCode kBad = ErrorCode::kBadArea;
   const Bounds box = mesh_bounds(scene.mesh);
   if (!options.file.empty()) return load_areas(options.file, box);
   if (options.sun)
-    return from_option("--sun", [&] { return std::vector{directional_light_area("sun", *options.sun, box)}; });
-  if (options.light) return from_option("--light", [&] { return point_light_areas("light", *options.light, box); });
+    return from_option("--sun", kBad, [&] { return std::vector{directional_light_area("sun", *options.sun, box)}; });
+  if (options.light)
+    return from_option("--light", kBad, [&] { return point_light_areas("light", *options.light, box); });
   if (!options.camera) return scene.areas;
-  return from_option("--camera", [&] {
+  return from_option("--camera", kBad, [&] {
     const auto& [eye, target] = *options.camera;
     return std::vector{camera_area("camera", eye, target, options.field_of_view.value_or(kDefaultFieldOfView),
                                    options.aspect.value_or(kDefaultAspect), box)};

@@ -16,6 +16,7 @@
 #include "cli/open_scene.h"
 #include "cli/output_folder.h"
 #include "cli/pictures.h"
+#include "cli/recipe_options.h"
 #include "cli/rows.h"
 
 namespace raygrain::cli {
@@ -36,7 +37,8 @@ struct Options {
 
 CompareOptions compare_options(const Options& options, Progress& progress) {
   CompareOptions result;
-  for (const std::string& recipe : options.recipes) result.recipes.push_back(parse_recipe(recipe, result.registry));
+  for (const std::string& recipe : options.recipes)
+    result.recipes.push_back(recipe_option("--recipes", recipe, result.registry));
   result.rays = options.rays;
   result.seed = options.seed;
   result.verify = options.verify;

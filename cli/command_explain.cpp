@@ -14,6 +14,7 @@
 #include "cli/given_rays.h"
 #include "cli/memory.h"
 #include "cli/open_scene.h"
+#include "cli/recipe_options.h"
 #include "cli/structures.h"
 #include "cli/values.h"
 
@@ -35,7 +36,7 @@ struct Options {
 
 AcceleratorOptions accelerator_options(const Options& options) {
   AcceleratorOptions result;
-  if (!options.quality.empty()) result.quality = parse_quality(options.quality);
+  if (!options.quality.empty()) result.quality = quality_option(options.quality);
   set_structures(options.structures, result);
   result.threads = options.common.thread_count();
   return result;
@@ -92,6 +93,9 @@ std::string explanation_json(const Options& options, const Scene& scene, const E
                     {"rays", c.rays},
                     {"invalid_rays", c.invalid_rays},
                     {"covered", c.covered},
+                    {"local_searches", c.local_searches},
+                    {"columns", c.columns},
+                    {"cones", c.cones},
                     {"global_searches", c.global_searches},
                     {"areas", std::move(areas)}};
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -127,11 +131,12 @@ std::string times_table(const Explanation& explanation) {
   return text;
 }
 
-std::string explanation_text(const Scene& scene, Explanation explanation) {
+std::string explanation_text(const Options& options, const Scene& scene, Explanation explanation) {
   const std::string table = times_table(explanation);
   for (AreaReport& area : explanation.areas) area.times.clear();  // stand in the table
-  return fmt::format("{}: {} triangles, {} areas\n\n{}\n{}", scene.name, scene.mesh.triangle_count(),
-                     explanation.areas.size(), table, to_text(explanation));
+  const bool has_none = options.rays.is_given() && explanation.counters.rays == 0;
+  return fmt::format("{}: {} triangles, {} areas\n\n{}\n{}{}", scene.name, scene.mesh.triangle_count(),
+                     explanation.areas.size(), table, to_text(explanation), has_none ? "0 rays given\n" : "");
 }
 
 int explain(const Options& options) {
@@ -158,14 +163,14 @@ int explain(const Options& options) {
   const Explanation explanation = accelerator.explain(count_rays(accelerator, rays, options), options.samples);
   progress.erase();
   output.save_json(explanation_json(options, scene, explanation));
-  output.print(explanation_text(scene, explanation));
+  output.print(explanation_text(options, scene, explanation));
   return kSuccess;
 }
 
 }  // namespace
 
 Action declare_explain(Arguments& arguments) {
-  constexpr uint64_t kMostSamples = 100'000'000;
+  constexpr uint64_t kMostSamples = 1'000'000;  // more take minutes, and times are no better
   const auto options = std::make_shared<Options>();
   arguments.operand("SCENE", options->scene, kSceneHelp);
   arguments.whole("--samples", options->samples, {1, kMostSamples},

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "raygrain/accelerator.h"
 #include "raygrain/compare.h"
@@ -12,21 +11,19 @@
 #include "raygrain/io.h"
 
 #include "cli/areas.h"
-#include "cli/asked_rays.h"
 #include "cli/commands.h"
-#include "cli/environment_json.h"
 #include "cli/given_rays.h"
 #include "cli/memory.h"
 #include "cli/open_scene.h"
+#include "cli/recipe_options.h"
 #include "cli/structures.h"
+#include "cli/trace_report.h"
 #include "cli/tree_file.h"
 #include "cli/values.h"
 
 namespace raygrain::cli {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kDefaultLocal = "PAH+ALL@binned";
 constexpr const char* kDefaultGlobal = "SAH+ALL@binned";
@@ -45,18 +42,18 @@ struct Options {
 
 AcceleratorOptions accelerator_options(const Options& options) {
   AcceleratorOptions result;
-  result.local = parse_recipe(options.local, result.registry);
-  result.global = parse_recipe(options.global, result.registry);
+  result.local = recipe_option("--local", options.local, result.registry);
+  result.global = recipe_option("--global", options.global, result.registry);
   result.global.for_wide = result.global.builder != "paper";
   if (!options.quality.empty()) {
     if (options.global.find('@') != std::string::npos && options.global != kDefaultGlobal)
       fail_usage("--quality", "cannot be combined with a recipe that names its builder", "Leave one of them out");
-    result.quality = parse_quality(options.quality);
+    result.quality = quality_option(options.quality);
   }
   result.reinsert = options.reinsert;
   result.reinsert_local = options.reinsert_local;
   result.wide_measure = options.wide_measure;
-  if (!options.wide_measure.empty()) parse_recipe(options.wide_measure + "+ALL", result.registry);  // is it known?
+  if (!options.wide_measure.empty()) check_measure_option("--wide-measure", options.wide_measure, result.registry);
   if (options.traversal != "wide" && options.traversal != "binary")
     fail_usage("--traversal", "unknown form '" + options.traversal + "'", "Known: wide, binary");
   if (options.traversal == "binary" && !options.wide_measure.empty())
@@ -75,100 +72,11 @@ AcceleratorOptions accelerator_options(const Options& options) {
   return result;
 }
 
-struct Traced {
-  size_t rays = 0;
-  RayAnswers answers;
-  std::optional<CheckedAnswers> checked;
-};
-
-Json work(const TraceCounters& c) {
-  return {{"inner_hits", c.inner_hits},
-          {"leaf_hits", c.leaf_hits},
-          {"leaf_triangles", c.leaf_triangles},
-          {"box_tests", c.box_tests},
-          {"triangle_tests", c.triangle_tests}};
-}
-
-/// A ray, or a search of a local tree, by who answered it.
-Json ways(const AcceleratorCounters& c) {
-  return {{"covered", c.covered},
-          {"columns", c.columns},
-          {"cones", c.cones},
-          {"local_searches", c.local_searches},
-          {"global_searches", c.global_searches}};
-}
-
-Json checked_json(const CheckedAnswers& checked) {
-  Json rows = Json::array();
-  for (const CheckedQuestion& q : checked.questions) {
-    Json row{{"question", name(q.question)}};
-    row.update(ways(q.counters));
-    row["differences"] = q.differences;
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
-
-std::string trace_json(const Options& options, const Scene& scene, const Traced& traced) {
-  const AcceleratorCounters& c = traced.answers.counters;
-  Json report{{"scene", scene.name},
-              {"triangles", scene.mesh.triangle_count()},
-              {"environment", environment_json(options.common.thread_count())},
-              {"rays", traced.rays},
-              {"hits", traced.answers.hit_count()},
-              {"trace_seconds", traced.answers.seconds},
-              {"counters",
-               {{"invalid_rays", c.invalid_rays},
-                {"covered", c.covered},
-                {"columns", c.columns},
-                {"cones", c.cones},
-                {"areas_tested", c.areas_tested},
-                {"areas_serving", c.areas_serving},
-                {"local_searches", c.local_searches},
-                {"local_hits", c.local_hits},
-                {"continued", c.continued},
-                {"global_searches", c.global_searches},
-                {"local", work(c.local)},
-                {"global", work(c.global)}}}};
-  if (traced.checked) {
-    report["mismatches"] = traced.checked->wrong;
-    report["checked"] = checked_json(*traced.checked);
-  }
-  return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
-std::string checked_text(const CheckedAnswers& checked) {
-  std::string text = fmt::format("\n{:<24} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "by brute force", "coverage",
-                                 "columns", "cones", "other local", "global", "differences");
-  for (const CheckedQuestion& q : checked.questions) {
-    const AcceleratorCounters& c = q.counters;
-    text += fmt::format("{:<24} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", name(q.question), c.covered, c.columns,
-                        c.cones, c.local_searches - c.columns - c.cones, c.global_searches, q.differences);
-  }
-  return text;
-}
-
-std::string trace_text(const Scene& scene, size_t areas, const Traced& traced) {
-  const AcceleratorCounters& c = traced.answers.counters;
-  std::string text = fmt::format("{}: {} triangles, {} areas\n", scene.name, scene.mesh.triangle_count(), areas);
-  const auto line = [&](const char* name, uint64_t value) { text += fmt::format("  {:<36} {:>12}\n", name, value); };
-  line("rays", traced.rays);
-  line("hits", traced.answers.hit_count());
-  line("invalid rays (misses)", c.invalid_rays);
-  line("answered by the coverage of an area", c.covered);
-  line("areas asked", c.areas_tested);
-  line("areas that serve", c.areas_serving);
-  line("searches of local trees", c.local_searches);
-  line("... in ray space, as columns", c.columns);
-  line("... in ray space, as cones", c.cones);
-  line("hits accepted from local trees", c.local_hits);
-  line("searches that went on in a next area", c.continued);
-  line("searches of the global tree", c.global_searches);
-  line("boxes tested", c.local.box_tests + c.global.box_tests);
-  line("triangles tested", c.local.triangle_tests + c.global.triangle_tests);
-  if (!traced.checked) return text;
-  line("differences from brute force", traced.checked->wrong);
-  return text + checked_text(*traced.checked);
+/// The first option that is about areas' trees; "" without any.
+std::string given_local_option(const Options& options) {
+  if (options.local != kDefaultLocal) return "--local";
+  if (options.reinsert_local) return "--reinsert-local";
+  return options.wide_measure.empty() ? "" : "--wide-measure";
 }
 
 void check_options(const Options& options) {
@@ -181,8 +89,18 @@ void check_options(const Options& options) {
   const std::string structure = given_structure_option(options.structures);
   if (!options.tree.empty() && !structure.empty())
     fail_usage("--tree", "cannot be combined with " + structure, "Beside a built tree areas have trees of the world");
+  const std::string local = given_local_option(options);
+  if (options.structures.space == "none" && !local.empty())
+    fail_usage(local, "is about areas' trees, and --space none builds none", "Leave one of them out");
   check_ray_options(options.rays);
   if (!options.rays.is_given()) fail_usage("--rays", "no rays are given", kRaysHint);
+}
+
+void require_areas(const Options& options, const std::vector<InfluenceArea>& areas) {
+  const std::string local = given_local_option(options), structure = given_structure_option(options.structures);
+  if (areas.empty() && !(local + structure).empty())
+    fail_usage(local.empty() ? structure : local, "is about influence areas, and there are none",
+               "Add --sun X,Y,Z (direction of the light), --light X,Y,Z, --camera EYE TARGET or --areas FILE.json");
 }
 
 /// With the global tree of a file, where one is given.
@@ -241,6 +159,7 @@ int trace(const Options& options) {
   Progress progress(!options.common.quiet);
   const Scene scene = open_scene(options.scene, progress);
   const std::vector<InfluenceArea> areas = choose_areas(options.areas, scene, output);
+  require_areas(options, areas);
   const std::vector<Ray> rays = given_rays(options.rays, scene);
 
   const Traced traced = trace_and_verify(options, scene, areas, rays, progress);
@@ -249,8 +168,8 @@ int trace(const Options& options) {
   else
     save_hits(traced.answers.hits, options.output);
   progress.erase();
-  output.save_json(trace_json(options, scene, traced));
-  output.print(trace_text(scene, areas.size(), traced));
+  output.save_json(trace_json(traced, scene, options.common.thread_count()));
+  output.print(trace_text(traced, scene, areas.size()));
   output.note("Written:\n  " + options.output + "\n");
   if (!traced.checked || traced.checked->wrong == 0) return kSuccess;
   throw Error(ErrorCode::kLimit, options.output, fmt::format("{} rays GOT WRONG ANSWERS", traced.checked->wrong),

@@ -15,6 +15,7 @@
 #include "cli/commands.h"
 #include "cli/memory.h"
 #include "cli/open_scene.h"
+#include "cli/recipe_options.h"
 #include "cli/serve.h"
 #include "cli/values.h"
 #include "io/text.h"
@@ -48,7 +49,7 @@ std::vector<Recipe> chosen_recipes(const Options& options, bool has_areas, const
   if (names.empty()) names = {"SAH+LSPH", has_areas ? "PAH+ALL" : "SAH+ALL"};
   std::vector<Recipe> recipes;
   recipes.reserve(names.size());
-  for (const std::string& name : names) recipes.push_back(parse_recipe(name, registry));
+  for (const std::string& name : names) recipes.push_back(recipe_option("--recipes", name, registry));
   for (const Recipe& recipe : recipes)
     if (!has_areas && (needs_area(recipe, registry) || needs_samples(recipe, registry)))
       fail_usage("--recipes", fmt::format("'{}' needs an area and there is none", recipe_name(recipe)),

@@ -12,6 +12,7 @@
 #include "base/nearest_name.h"
 #include "base/timer.h"
 #include "cli/memory.h"
+#include "cli/recipe_options.h"
 #include "cli/tree_file.h"
 #include "cli/values.h"
 
@@ -110,13 +111,13 @@ Recipe check_tree_options(const TreeOptions& options, const Registry& registry) 
   check_area_options(options.areas);
   if (options.whole && !options.area.empty())
     fail_usage("--whole", "cannot be combined with --area", "Leave one of them out");
-  Recipe recipe = parse_recipe(options.recipe, registry);
+  Recipe recipe = recipe_option("--recipe", options.recipe, registry);
   if (!options.file.empty() && (!options.quality.empty() || options.reinsert))
     fail_usage("--tree", "cannot be combined with --quality or --reinsert", "They say how a new tree is built");
   if (options.quality.empty()) return recipe;
   if (options.recipe.find('@') != std::string::npos)
     fail_usage("--quality", "cannot be combined with a recipe that names its builder", "Leave one of them out");
-  set_quality(recipe, parse_quality(options.quality));
+  set_quality(recipe, quality_option(options.quality));
   return recipe;
 }
 

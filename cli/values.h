@@ -5,11 +5,24 @@
 #include <string>
 #include <string_view>
 
+#include "raygrain/error.h"
 #include "raygrain/vec.h"
 
 namespace raygrain::cli {
 
 [[noreturn]] void fail_usage(const std::string& where, const std::string& what, const std::string& hint);
+
+/// What make() returns. Its errors of this kind are about the option's value, which is the user's words: they become
+/// errors of usage and carry the option's name.
+template <class Make>
+auto from_option(const std::string& option, ErrorCode code, const Make& make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (error.code != code) throw;
+    throw Error(ErrorCode::kUsage, option, error.message, error.hint);
+  }
+}
 
 uint64_t parse_whole(const std::string& option, std::string_view text, uint64_t lo, uint64_t hi);
 /// Strictly between: the ends themselves are refused, as are infinity and NaN.

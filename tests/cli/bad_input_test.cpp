@@ -216,6 +216,7 @@ std::vector<BadInput> bad_usage() {
        kUsage,
        "combined with --set"},
       {"explain by no rays", {"explain", "SCENE", "--sun", "0,0,1", "--samples", "0"}, kUsage, "--samples"},
+      {"explain by too many", {"explain", "SCENE", "--sun", "0,0,1", "--samples", "1000001"}, kUsage, "to 1000000"},
       {"format that cannot be written", {"scene", "convert", "SCENE", "-o", "OUT.gltf"}, kUsage, ".gltf"},
   };
 }
@@ -237,6 +238,7 @@ std::vector<BadInput> bad_outputs() {
       {"output folder below a file", with({"--out", "SCENE/folder"}), kData, "SCENE/folder"},
       {"output folder where none can be", with({"--out", "/proc/raygrain"}), kData, "/proc/raygrain"},
       {"output folder is a file", with({"--out", "SCENE"}), kData, "SCENE"},
+      {"failures where none can be", {"verify", "--rays", "10", "--out", "/proc/raygrain"}, kData, "/proc/raygrain"},
       {"json in no folder", with({"--json", "/no/such/folder/a.json"}), kData, "/no/such/folder/a.json"},
       {"json is a folder", with({"--json", "/"}), kData, "folder"},
       {"tree in no folder",
@@ -258,7 +260,7 @@ std::vector<BadInput> bad_outputs() {
        small_files},
       limited({"out of memory", {"compare", kSmallScene, "--rays", "1000000000"}, kData, "memory"}, little_memory),
       limited({"too many rays", {"compare", kSmallScene, "--rays", "1000000000"}, kData, "59.6 GiB"}, believed_memory),
-      limited({"too many samples", {"explain", kSmallScene, "--samples", "100000000"}, kData, "--samples"},
+      limited({"too many samples", {"explain", kSmallScene, "--samples", "1000000"}, kData, "--samples"},
               believed_memory),
       limited({"too large to trace", {"trace", kMiddleScene, "--set", "sun", "-o", "OUT"}, kData, "--quality fast"},
               believed_memory),

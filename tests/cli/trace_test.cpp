@@ -7,6 +7,7 @@
 #include "raygrain/io.h"
 
 #include "cli/asked_rays.h"
+#include "cli/bad_input.h"
 #include "cli/program.h"
 #include "support/shared.h"
 
@@ -99,6 +100,34 @@ TEST_F(TraceOfASun, RoutesAsItIsTold) {
   EXPECT_EQ(local({"--no-coverage"}), 40);
   EXPECT_EQ(local({"--no-coverage", "--routing", "areas", "--space", "ray", "--frame", "shear_z"}), 40);
   EXPECT_EQ(local({"--no-coverage", "--routing", "cheapest"}), 0);  // four triangles need no trees of their own
+}
+
+TEST(TraceOptions, ThatWouldBeIgnoredAreRefused) {
+  const std::vector<std::string> trace{"trace", "SCENE", "--rays", "RAYS", "-o", "OUT"};
+  const auto refused = [&](std::vector<std::string> more, const std::string& expected) {
+    std::vector<std::string> arguments = trace;
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    BadInput row{fmt::format("{}", fmt::join(more, " ")), arguments, 2, expected};
+    row.rays = "ox,oy,oz,dx,dy,dz\n0,0,1,0,0,-1\n";
+    check(row);
+  };
+  const std::string no_areas = ": is about influence areas, and there are none";
+  refused({"--reinsert-local"}, "--reinsert-local" + no_areas);
+  refused({"--wide-measure", "VISIBLE"}, "--wide-measure" + no_areas);
+  refused({"--local", "PAH+ALL"}, "--local" + no_areas);
+  refused({"--space", "ray"}, "--space" + no_areas);
+  refused({"--no-coverage"}, "--no-coverage" + no_areas);
+  refused({"--frame", "rotation"}, "Add --space ray");
+  refused({"--frame", "shear", "--space", "ray"}, "Known: rotation, shear_x");
+  refused({"--routing", "best"}, "Known: cheapest, areas");
+  refused({"--space", "none", "--reinsert-local"}, "--space none builds none");
+  refused({"--space", "none", "--no-coverage"}, "--no-coverage: leaves areas nothing");
+  refused({"--space", "ray", "--traversal", "binary"}, "--space: ray needs wide trees");
+  refused({"--routing", "cheapest", "--traversal", "binary"}, "--routing: cheapest needs wide trees");
+  refused({"--tree", "SCENE", "--routing", "areas"}, "--tree: cannot be combined with --routing");
+  refused({"--quality", "foo"}, "--quality: unknown quality \"foo\"");
+  refused({"--wide-measure", "nope"}, "--wide-measure: unknown name \"nope\"");
+  refused({"--global", "SAH+ALL@papers"}, "--global: unknown name \"papers\"");
 }
 
 /// Local trees that lack a triangle answer wrongly, and only where they are asked.

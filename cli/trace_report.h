@@ -1,0 +1,22 @@
+// What raygrain trace says about its rays.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "raygrain/scene.h"
+
+#include "cli/asked_rays.h"
+
+namespace raygrain::cli {
+
+struct Traced {
+  size_t rays = 0;
+  RayAnswers answers;
+  std::optional<CheckedAnswers> checked;  // where that was asked for
+};
+
+std::string trace_json(const Traced& traced, const Scene& scene, unsigned threads);
+std::string trace_text(const Traced& traced, const Scene& scene, size_t areas);
+
+}  // namespace raygrain::cli
