@@ -147,7 +147,8 @@ struct LazyAreas {
 Study areas_study(const StudySources& sources) {
   Study study{"areas", columns(), {}, "rays " + std::to_string(sources.rays), {}};
   std::vector<StudyScene> scenes{procedural_scene("procedural:city", "City")};
-  check_wanted(sources, {"City", "Sponza"});
+  check_wanted(sources,
+               sources.quick ? std::vector<std::string_view>{"City"} : std::vector<std::string_view>{"City", "Sponza"});
   StudySources sponza = sources;
   sponza.only = {"Sponza"};
   if (is_wanted(sources, "Sponza") && !sources.quick)

@@ -160,6 +160,7 @@ std::vector<std::string> run_row(const TriangleMesh& mesh, const std::string& wh
 
 /// About 100,000 triangles each, and the two large models.
 std::vector<StudyScene> scenes_of(const StudySources& sources, std::vector<std::string>& missing) {
+  check_wanted(sources, {"City", "Forest", "Terrain", "Sponza", "Crowd"});
   const std::pair<const char*, const char*> kProcedural[] = {{"City", "procedural:city?size=15"},
                                                              {"Forest", "procedural:forest?size=16"},
                                                              {"Terrain", "procedural:terrain?size=224"}};
@@ -168,10 +169,13 @@ std::vector<StudyScene> scenes_of(const StudySources& sources, std::vector<std::
                                                         {"Terrain", "procedural:terrain?size=16"}};
   std::vector<StudyScene> extra;
   for (const auto& [name, text] : sources.quick ? kQuick : kProcedural) extra.push_back(procedural_scene(text, name));
-  std::vector<StudyScene> scenes = paper_scenes(sources, missing, extra);
-  std::erase_if(scenes, [](const StudyScene& scene) { return scene.name != "Sponza" && scene.name != "Crowd"; });
-  std::erase_if(missing,
-                [](const std::string& text) { return !text.starts_with("Sponza") && !text.starts_with("Crowd"); });
+  std::vector<StudyScene> scenes;
+  for (const char* model : {"Crowd", "Sponza"}) {
+    if (!is_wanted(sources, model)) continue;
+    StudySources alone = sources;
+    alone.only = {model};
+    for (StudyScene& scene : paper_scenes(alone, missing)) scenes.push_back(std::move(scene));
+  }
   for (const StudyScene& scene : extra)
     if (is_wanted(sources, scene.name)) scenes.push_back(scene);
   return scenes;

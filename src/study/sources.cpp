@@ -35,7 +35,7 @@ std::vector<std::string_view> paper_scene_names() {
 void check_wanted(const StudySources& sources, const std::vector<std::string_view>& names) {
   for (const std::string& name : sources.only)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      throw Error(ErrorCode::kUsage, name, "is no scene of this study", suggestion(name, names));
+      throw Error(ErrorCode::kUsage, '"' + name + '"', "is no scene of this study", suggestion(name, names));
 }
 
 bool is_wanted(const StudySources& sources, const std::string& scene) {

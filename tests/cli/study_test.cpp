@@ -95,13 +95,24 @@ TEST(StudyProgram, RefusesBadInput) {
            {{"study", "paper", "--scenes", folder.file("none"), "--out", folder.file("o")}, 1, "is no folder"},
            {{"study", "paper", "--only", "Random1", "--out", folder.file("o")},
             2,
-            "Random1: is no scene of this study"},
+            "\"Random1\": is no scene of this study"},
            {{"study", "paper", "--only", "Wood", "--out", folder.file("o")},
             1,
             "their models are missing (Wood: needs woods.obj). Name the folder that holds them with --scenes"},
            {{"study", "stress", "--only", "Wood", "--out", folder.file("o")}, 1, "needs woods.obj"},
-           {{"study", "scaling", "--only", "City 3", "--out", folder.file("o")}, 2, "City 3: is no scene"},
-           {{"study", "areas", "--only", "Village", "--out", folder.file("o")}, 2, "Village: is no scene"},
+           {{"study", "scaling", "--only", "City 3", "--out", folder.file("o")}, 2, "\"City 3\": is no scene"},
+           {{"study", "areas", "--only", "Village", "--out", folder.file("o")}, 2, "\"Village\": is no scene"},
+           {{"study", "areas", "--quick", "--only", "Sponza", "--out", folder.file("o")}, 2, "\"Sponza\": is no scene"},
+           {{"study", "scaling", "--quick", "--only", "City 8", "--out", folder.file("o")},
+            2,
+            "\"City 8\": is no scene"},
+           {{"study", "visibility", "--quick", "--only", "Cottage", "--out", folder.file("o")},
+            2,
+            "\"Cottage\": is no scene of this study. Known: City, Forest, Terrain, Sponza, Crowd"},
+           {{"study", "visibility", "--quick", "--only", "", "--out", folder.file("o")},
+            2,
+            "\"\": is no scene of this study"},
+           {{"study", "visibility", "--quick", "--only", "Crowd", "--out", folder.file("o")}, 1, "Crowd: needs"},
            {{"study", "paper", "--rays", "0"}, 2, "--rays"},
            {{"study", "paper", "--jobs", "-1"}, 2, "--jobs"},
            {{"study", "paper", "--only", "Random100", "--out", folder.file("bad.json")}, 1, "bad.json"}}) {
@@ -147,7 +158,7 @@ TEST(StudyProgram, RefusesBadStudyFilesBeforeAnyRow) {
   write_file(folder.file("grid.json"), kGrid);
   const RunResult other = run_program({"study", folder.file("grid.json"), "--only", "Wood", "--out", folder.file("o")});
   EXPECT_EQ(other.exit_code, 2);
-  EXPECT_NE(other.errors.find("Wood: is no scene of this study"), std::string::npos) << other.errors;
+  EXPECT_NE(other.errors.find("\"Wood\": is no scene of this study"), std::string::npos) << other.errors;
 }
 
 /// Rows of two grids must never stand in one file: not after a kill, not after the end.
