@@ -1,12 +1,13 @@
 // What the page holds and does; panels and keys only ask and tell it.
 import type { Area } from './area';
 import { begin, end } from './busy';
-import { inkColour, randomColour, ROLE_COLOURS, type Colour } from './colours';
+import { inkColour, ROLE_COLOURS, type Colour } from './colours';
 import { castRays, measureRays, type RayStats } from './cost';
 import type { ViewData } from './data';
 import { boxes, limitBoxes } from './layers/box_layer';
 import { areaLines, segments, type Segment } from './layers/line_layer';
 import { MeshLayer } from './layers/mesh_layer';
+import { topLevelCells } from './layers/top_layer';
 import type { Mesh } from './mesh';
 import { nodeColours, shownNodes, type NodeColours, type ShownNodes } from './shown_nodes';
 import { Stage } from './stage';
@@ -155,20 +156,7 @@ export class App {
 
   private applyTop(): void {
     clear(this.topGroup);
-    const { top, cell, hidden } = this.state;
-    const cells = this.top.leaves.filter((leaf) => leaf.areas.some((area) => !hidden.includes(area)));
-    const flat = (i: number): number[] => [...cells[i].box.lo, ...cells[i].box.hi];
-    /** The mean of the colours of its areas. */
-    const colour = (i: number): [number, number, number] => {
-      const all = cells[i].areas.map((area) => randomColour(area + 3));
-      return [0, 1, 2].map((k) => all.reduce((sum, c) => sum + c[k], 0) / all.length) as [number, number, number];
-    };
-    const list = { count: cells.length, box: flat, colour };
-    if (top === 'leaves' || top === 'both') this.topGroup.add(boxes(list, { filled: true, opacity: Math.min(0.3, 0.5 / Math.cbrt(cells.length)) }));
-    if (top === 'wireframe' || top === 'both') this.topGroup.add(boxes(list, { filled: false, opacity: 1 }));
-    const chosen = this.top.leaves[cell];
-    if (chosen && top !== 'none')
-      this.topGroup.add(boxes({ count: 1, box: () => [...chosen.box.lo, ...chosen.box.hi], colour: inkColour }, { filled: false, opacity: 1, onTop: true }));
+    for (const object of topLevelCells(this.top, this.state)) this.topGroup.add(object);
   }
 
   private applyBoxes(): void {
