@@ -130,7 +130,7 @@ Traced trace_and_verify(const Options& options, const Scene& scene, const std::v
     return true;
   };
   require_memory("tracing", bytes_of_accelerator(scene.mesh, areas, build),
-                 "Take --quality fast, a smaller scene or fewer areas");
+                 "Take --quality fast, --space none, a smaller scene or fewer areas");
   const Accelerator accelerator = make_accelerator(options, scene, areas, build);
   Traced traced{rays.size(),
                 ask_rays(accelerator, rays, options.any, threads,

@@ -14,8 +14,9 @@ namespace {
 
 // Bytes a triangle, measured on a terrain of 980,000 triangles (peak of the process, less the mesh).
 constexpr double kSubset = 190, kBinned = 210, kSpatial = 250;  // a builder, with its log and the finished tree
-constexpr double kArea = 300;      // the local tree in both forms and the coverage, beside the global tree
-constexpr double kKeptTree = 100;  // one of several finished trees
+constexpr double kArea = 300;        // the local tree in both forms and the coverage, beside the global tree
+constexpr double kInRaySpace = 260;  // its tree in ray space besides, with the corners
+constexpr double kKeptTree = 100;    // one of several finished trees
 
 double bytes_per_triangle(const std::string& builder) {
   if (builder == "subset") return kSubset;
@@ -66,8 +67,9 @@ double bytes_of_tree(const TriangleMesh& mesh, const InfluenceArea* area, const 
 double bytes_of_accelerator(const TriangleMesh& mesh, std::span<const InfluenceArea> areas,
                             const AcceleratorOptions& options) {
   const std::string builder = options.quality ? builder_name(*options.quality) : options.global.builder;
+  const double area = options.space == LocalSpace::kRay ? kArea + kInRaySpace : kArea;
   const double copy = static_cast<double>(mesh.vertices.size() * sizeof(Vec3) + mesh.triangles.size() * 12);
-  return copy + count_of(mesh) * bytes_per_triangle(builder) + members_of(mesh, areas) * kArea;
+  return copy + count_of(mesh) * bytes_per_triangle(builder) + members_of(mesh, areas) * area;
 }
 
 double bytes_of_comparison(const TriangleMesh& mesh, std::span<const InfluenceArea> areas,

@@ -130,6 +130,15 @@ TEST(TraceOptions, ThatWouldBeIgnoredAreRefused) {
   refused({"--global", "SAH+ALL@papers"}, "--global: unknown name \"papers\"");
 }
 
+TEST(TraceOptions, TreesInRaySpaceNeedMemory) {
+  BadInput row{"too large in ray space",
+               {"trace", "procedural:terrain?size=225", "--set", "sun", "-o", "OUT", "--space", "ray"},
+               1,
+               "of memory, and 0.1 GiB are left"};
+  row.options.memory_left = "70";  // enough for trees in the world
+  check(row);
+}
+
 /// Local trees that lack a triangle answer wrongly, and only where they are asked.
 TEST(CheckAnswers, FindsEveryWrongAnswer) {
   const TemporaryFolder folder;
