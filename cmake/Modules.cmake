@@ -23,9 +23,9 @@ target_compile_definitions(raygrain_options INTERFACE
 
 set(RAYGRAIN_MODULES "" CACHE INTERNAL "")
 
-# The standard headers that nearly every source reads, read once under GCC's sanitizers: without them GCC 12 warns about
-# the inside of std::string where they are precompiled.
-if(RAYGRAIN_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+# The standard headers that nearly every source reads, read once where GCC compiles: a quarter of its time. Clang's builds
+# include what they need.
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   file(WRITE ${PROJECT_BINARY_DIR}/generated/standard_headers.cpp "// Nothing but what the precompiled headers hang on.\n")
   add_library(raygrain_standard_headers OBJECT ${PROJECT_BINARY_DIR}/generated/standard_headers.cpp)
   set_target_properties(raygrain_standard_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)

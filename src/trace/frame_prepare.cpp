@@ -149,6 +149,18 @@ FrameLine projective_line(const FrameMemory& tree, Vec3d q, Vec2d x, double orig
           std::max(std::abs(slope.x), std::abs(slope.y)) * tree.half + error};
 }
 
+/// The depths that the ray and the tree have in common; false where there are none.
+bool set_depths(const FrameMemory& tree, const Depths& depths, FrameColumn& column) {
+  const double lo = std::max(static_cast<double>(tree.depths[0]), depths.lo);
+  const double hi = std::min(static_cast<double>(tree.depths[1]), depths.hi);
+  if (!(lo <= hi)) return false;
+  column.box.lo.z = loosely_below(lo);
+  column.box.hi.z = loosely_above(hi);
+  column.sure_lo = loosely_above(std::max(lo, depths.sure_lo));
+  column.sure_hi = loosely_below(std::min(hi, depths.sure_hi));
+  return true;
+}
+
 }  // namespace
 
 FrameUse prepare(const FrameMemory& tree, const Ray& ray, FrameQuery& query) {
@@ -183,21 +195,14 @@ FrameUse prepare(const FrameMemory& tree, const Ray& ray, FrameQuery& query) {
   if (!is_column && !(slope * 2 * tree.half <= kConeDrift * tree.width && line.error <= kColumnDrift * tree.width))
     return FrameUse::kUnfit;
 
-  FrameColumn& column = query.column;
-  column.ascending = m.z > 0;
-  const double lo = std::max(static_cast<double>(tree.depths[0]), depths.lo);
-  const double hi = std::min(static_cast<double>(tree.depths[1]), depths.hi);
-  if (!(lo <= hi)) return FrameUse::kColumn;
-  column.box.lo.z = loosely_below(lo);
-  column.box.hi.z = loosely_above(hi);
-  column.sure_lo = loosely_above(std::max(lo, depths.sure_lo));
-  column.sure_hi = loosely_below(std::min(hi, depths.sure_hi));
+  query.column.ascending = m.z > 0;
+  if (!set_depths(tree, depths, query.column)) return FrameUse::kColumn;
   if (is_column) {
-    set_sides(column, line.at.x, line.at.y, line.radius);
+    set_sides(query.column, line.at.x, line.at.y, line.radius);
     return FrameUse::kColumn;
   }
-  column.box.lo.x = column.box.lo.y = -kInf;
-  column.box.hi.x = column.box.hi.y = kInf;
+  query.column.box.lo.x = query.column.box.lo.y = -kInf;
+  query.column.box.hi.x = query.column.box.hi.y = kInf;
   set_cone(tree, line.intercept, line.slope, line.error, query);
   return FrameUse::kCone;
 }

@@ -58,14 +58,25 @@ struct Combination {
   Accelerator accelerator;
 };
 
+/// At small scale each recipe meets every other family.
+std::vector<Recipe> recipes_for(size_t family, const Registry& registry) {
+  std::vector<Recipe> recipes = all_recipes(registry);
+  if (test::seed_count(4) > 1) return recipes;
+  size_t i = 0;
+  std::erase_if(recipes, [&](const Recipe&) { return (i++ + family) % 2 == 0; });
+  return recipes;
+}
+
 /// Each recipe for all areas that it is valid for, with list and octree; the global trees in turn, and each alone. Half
 /// of each kind is searched as binary trees, half as wide ones.
-std::vector<Combination> all_combinations(const TriangleMesh& mesh, const std::vector<InfluenceArea>& areas) {
+std::vector<Combination> all_combinations(const TriangleMesh& mesh, const std::vector<InfluenceArea>& areas,
+                                          size_t family) {
   const Registry registry = default_registry();
+  const std::vector<Recipe> recipes = recipes_for(family, registry);
   const auto shared_mesh = std::make_shared<const TriangleMesh>(mesh);
   std::vector<Combination> combinations;
   std::vector<std::shared_ptr<const Bvh>> globals;
-  for (const Recipe& recipe : all_recipes(registry)) {
+  for (const Recipe& recipe : recipes) {
     if (!is_valid_for(recipe, registry, nullptr)) continue;
     globals.push_back(std::make_shared<const Bvh>(build_global_tree(mesh, recipe, registry)));
     const bool wide = globals.size() % 2 == 0;
@@ -78,7 +89,7 @@ std::vector<Combination> all_combinations(const TriangleMesh& mesh, const std::v
                             Accelerator(shared_mesh, {}, std::make_shared<const Bvh>(std::move(reinserted)), {},
                                         wide ? Traversal::kBinary : Traversal::kWide)});
   }
-  for (const Recipe& recipe : all_recipes(registry)) {
+  for (const Recipe& recipe : recipes) {
     std::vector<LocalTree> locals;
     for (const InfluenceArea& area : areas)
       if (is_valid_for(recipe, registry, &area))
@@ -181,13 +192,13 @@ std::vector<Hit> brute_force(const TriangleMesh& mesh, const std::vector<Ray>& r
   return hits;
 }
 
-Tally compare_all(const NamedMesh& family, size_t count, uint64_t seed) {
+Tally compare_all(const NamedMesh& family, size_t number, size_t count, uint64_t seed) {
   const std::vector<InfluenceArea> areas = areas_around(family.mesh, seed);
   std::vector<Ray> rays = test::aimed_rays(family.mesh, count / 2, seed);
   for (const Ray& ray : rays_of_areas(family.mesh, areas, count - rays.size(), seed)) rays.push_back(ray);
   keep_distinct(rays);
   const std::vector<Hit> expected = brute_force(family.mesh, rays);
-  const std::vector<Combination> combinations = all_combinations(family.mesh, areas);
+  const std::vector<Combination> combinations = all_combinations(family.mesh, areas, number);
   std::vector<Tally> tallies(combinations.size());
   parallel_for(combinations.size(), 1, 0, [&](size_t begin, size_t end) {
     for (size_t i = begin; i < end; ++i) tallies[i] = compare(combinations[i], rays, expected);
@@ -223,7 +234,7 @@ class Differential : public testing::TestWithParam<size_t> {
 TEST_P(Differential, EveryCombinationEqualsBruteForce) {
   const NamedMesh& family = families()[GetParam()];
   const size_t count = wanted_rays() / families().size() + 1;
-  Tally tally = compare_all(family, count, kSeed + GetParam());
+  Tally tally = compare_all(family, GetParam(), count, kSeed + GetParam());
   if (family.closed) tally.leaks = leaks(family, count, kSeed + GetParam());
   std::cout << family.name << ": " << tally << "\n";
   total_.add(tally);

@@ -7,6 +7,7 @@
 #include "raygrain/heuristics.h"
 
 #include "build/build_support.h"
+#include "support/mesh_families.h"
 
 namespace raygrain::test {
 namespace {
@@ -56,7 +57,8 @@ void expect_one_tree(const std::vector<Bounds>& bounds) {
 }
 
 TEST(References, NeedNoKeysForMiddlesOfBoxes) {
-  for (const size_t count : {1u, 2u, 9u, 300u, 40000u}) {
+  for (const size_t count :
+       {size_t{1}, size_t{2}, size_t{9}, size_t{300}, static_cast<size_t>(test::seed_count(40000))}) {
     SCOPED_TRACE(count);
     expect_one_tree(random_prims(count, count).bounds);
   }
