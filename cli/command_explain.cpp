@@ -128,6 +128,10 @@ std::string times_table(const Explanation& explanation) {
                         times.area_nanoseconds, times.global_nanoseconds, percent(times.use.covered),
                         percent(times.use.local));
   }
+  for (const AreaReport& area : explanation.areas)
+    if (!area.times.empty() && std::ranges::none_of(area.times, [](const AreaTimes& t) { return t.question.any; }))
+      text += fmt::format("{:<{}}  no any-hit rays found: none of those tried from surfaces is its own\n", area.name,
+                          width);
   return text;
 }
 

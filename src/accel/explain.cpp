@@ -51,6 +51,7 @@ std::string route_text(const char* kind, const Route& route, std::span<const Are
                      ", near it " + (searches ? "its tree" : "global tree");
   if (costs.empty()) return text;
   const WayCosts& c = costs[area].*which;
+  if (!c.has_samples) return text + " (no rays along it to sample)";
   return text + text_line(" (predicted ns along it: coverage %s, tree %s, global %s; near it: tree %s, global %s)",
                           cost_text(c.coverage).c_str(), cost_text(c.local).c_str(), cost_text(c.global * many).c_str(),
                           cost_text(c.off_local).c_str(), cost_text(c.off_global * many).c_str());

@@ -42,6 +42,8 @@ std::string text_of(const AreaReport& area, uint64_t counted) {
     return std::pair(a.break_even_rays, a.use.answered() == 0) < std::pair(b.break_even_rays, b.use.answered() == 0);
   });
   for (const AreaTimes& t : times) text += text_of(t);
+  if (!times.empty() && std::ranges::none_of(times, [](const AreaTimes& t) { return t.question.any; }))
+    text += "  no any-hit rays found: none of those tried from surfaces is its own\n";
   text += text_line("  built in %.3f s, %.1f MB", area.build_seconds, megabytes(area.memory_bytes));
   text += area.triangles > 0 ? text_line(", %zu triangles in its tree\n", area.triangles) : "\n";
   for (size_t from = 0; from < area.routes.size();) {

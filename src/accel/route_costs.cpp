@@ -55,8 +55,12 @@ void spread(const InfluenceArea& area, std::vector<Ray>& rays) {
 std::vector<Ray> from_surfaces(const TriangleMesh& mesh, const AreaGeometry& geometry, uint64_t seed) {
   SurfaceRays rays{TowardsDirection{to_float(geometry.frame().forward)}};
   if (!geometry.is_plane()) rays.target = TowardsPoint{std::get<PointArea>(geometry.area().shape).eye};
-  std::vector<Ray> found = cast_rays(rays, mesh, 4 * kSamples, seed);
-  std::erase_if(found, [&](const Ray& ray) { return !geometry.serves(ray); });
+  std::vector<Ray> found;
+  for (const size_t tries : {4 * kSamples, 64 * kSamples}) {  // a small window sees little of a large scene
+    if (!found.empty()) break;
+    found = cast_rays(rays, mesh, tries, seed);
+    std::erase_if(found, [&](const Ray& ray) { return !geometry.serves(ray); });
+  }
   if (found.size() > kSamples) found.resize(kSamples);
   return found;
 }
@@ -80,6 +84,7 @@ class Pricing {
 
   WayCosts of(size_t area, const Samples& samples) const {
     WayCosts costs;
+    costs.has_samples = !samples.along.empty();
     costs.global = by_global(samples.along);
     costs.off_global = by_global(samples.off);
     if (parts_.has_locals) {
@@ -119,8 +124,7 @@ class Pricing {
   /// As a batch, which counts. Rays that coverage leaves cost the cell and the global tree.
   double by_coverage(size_t area, std::span<const Ray> rays, double global) const {
     const Coverage& coverage = parts_.coverages[area];
-    if (!coverage.is_useful()) return WayCosts::kNone;
-    if (rays.empty()) return 0;
+    if (!coverage.is_useful() || rays.empty()) return WayCosts::kNone;
     const bool is_plane = parts_.geometries[area].is_plane();
     std::vector<Vec3> points;
     for (const Ray& ray : rays) points.push_back(is_plane || any_ ? ray.origin : ray.direction);

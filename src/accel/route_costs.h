@@ -21,7 +21,8 @@ struct PricedParts {
 };
 
 /// By area. `source` gives sample rays; an area without any of its own gets seeded ones: from surfaces for any hit,
-/// from where its rays start for the nearest.
+/// from where its rays start for the nearest. None may be found along an area: then no way along it is priced but the
+/// global one.
 std::vector<AreaCosts> predict_costs(const PricedParts& parts, const SampleSource& source);
 
 /// What a ray of many costs a tree of so many bytes.

@@ -19,12 +19,18 @@ struct Choice {
   bool asks_coverage() const { return covers || covers_batches; }
 };
 
+/// Is the local tree expected to cost less than `share` of the global one? `along`: rays along the area, too.
+bool local_pays(const WayCosts& costs, bool along, double share) {
+  along = along && costs.has_samples;
+  const double local = costs.off_local + (along ? costs.local : 0),
+               global = costs.off_global + (along ? costs.global : 0);
+  return local <= kLeastGain * global * share;
+}
+
 Choice cheapest(const WayCosts& costs, bool can_cover, bool can_search) {
   Choice choice{can_cover && costs.coverage <= kLeastGain * costs.global, false, false};
-  const double along = choice.covers ? 0 : 1;  // rays along the area that a tree must answer
-  const double local = costs.off_local + along * costs.local, global = costs.off_global + along * costs.global;
-  choice.searches = can_search && local <= kLeastGain * global;
-  if (choice.searches) choice.covers = can_cover && costs.coverage <= costs.local;
+  choice.searches = can_search && local_pays(costs, !choice.covers, 1);
+  if (choice.searches) choice.covers = can_cover && costs.has_samples && costs.coverage <= costs.local;
   return choice;
 }
 
@@ -32,10 +38,8 @@ Choice cheapest(const WayCosts& costs, bool can_cover, bool can_search) {
 /// `share`: what the global tree's costs are multiplied by.
 Choice cheapest_of_many(const WayCosts& costs, bool can_cover, bool can_search, double share) {
   Choice choice{false, false, can_cover && kShareOfBatch * costs.coverage <= costs.global * share};
-  const double along = choice.covers_batches ? 0 : 1;
-  const double local = costs.off_local + along * costs.local, global = costs.off_global + along * costs.global;
-  choice.searches = can_search && local <= kLeastGain * global * share;
-  choice.covers = choice.searches && can_cover && costs.coverage <= costs.local;
+  choice.searches = can_search && local_pays(costs, !choice.covers_batches, share);
+  choice.covers = choice.searches && can_cover && costs.has_samples && costs.coverage <= costs.local;
   return choice;
 }
 

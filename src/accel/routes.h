@@ -32,10 +32,12 @@ struct Routes {
 
 /// What sample rays are expected to cost each way, in nanoseconds of the machine on which the prices were found: the
 /// rays along an area, which its coverage may answer, and rays within its tolerance. Infinite where there is no way.
+/// Where no rays along the area were found (`has_samples`), nothing says that coverage pays, and it is not asked.
 struct WayCosts {
   static constexpr double kNone = std::numeric_limits<double>::infinity();
   double coverage = kNone, local = kNone, global = 0;
   double off_local = kNone, off_global = 0;
+  bool has_samples = true;
 };
 struct AreaCosts {
   WayCosts any, nearest;

@@ -156,6 +156,47 @@ TEST(Explain, SharesTheCountedRaysAmongAreas) {
   EXPECT_EQ(error_of([&] { scene.explain(counters, 10); }).code, ErrorCode::kUsage);
 }
 
+/// Squares of side 1 at z = 0.
+TriangleMesh floor_of(int side) {
+  TriangleMesh mesh;
+  for (int i = 0; i < side; ++i)
+    for (int k = 0; k < side; ++k) {
+      const auto x = static_cast<float>(i), y = static_cast<float>(k);
+      const auto first = static_cast<uint32_t>(mesh.vertices.size());
+      mesh.vertices.insert(mesh.vertices.end(), {{x, y, 0}, {x + 1, y, 0}, {x + 1, y + 1, 0}, {x, y + 1, 0}});
+      mesh.triangles.push_back({first, first + 1, first + 2});
+      mesh.triangles.push_back({first, first + 2, first + 3});
+    }
+  return mesh;
+}
+
+// Nothing says that a structure pays for rays that there are none of.
+TEST(Explain, SaysWhereNoAnyHitsWereFound) {
+  const TriangleMesh mesh = floor_of(40);
+  // One ends in the floor, and rays from there start outside; the other has a thousandth of it.
+  const InfluenceArea sun = directional_light_area("sun", {0, 0, -1}, mesh_bounds(mesh));
+  const InfluenceArea spot{"spot", PlaneArea{{20.5f, 20.5f, 5}, {0, 0, -1}, {0, 1, 0}, 0.4f, 0.4f, 10}};
+  for (const LocalSpace space : {LocalSpace::kNone, LocalSpace::kRay}) {
+    AcceleratorOptions options;
+    options.space = space;
+    const Accelerator scene(mesh, {sun, spot}, options);
+    const Explanation explanation = scene.explain({}, 2000);
+    const std::string none = "any hit: along it global tree, near it global tree (no rays along it to sample)\n";
+    EXPECT_EQ(explanation.areas[0].routes.find(none), 0u) << explanation.areas[0].routes;
+    EXPECT_EQ(explanation.areas[1].routes.find("any hit: along it coverage"), 0u) << explanation.areas[1].routes;
+    EXPECT_EQ(explanation.areas[0].times.size(), 2u);
+    EXPECT_EQ(explanation.areas[1].times.size(), 4u);
+    const std::string text = to_text(explanation), line = "\n  no any-hit rays found: ";
+    EXPECT_LT(text.find(line), text.find("\nspot: "));
+    EXPECT_EQ(text.find(line), text.rfind(line));
+    AcceleratorCounters counters;
+    EXPECT_FALSE(scene.occluded({{3.5f, 3.2f, 1}, {0, 0, 1}}, &counters));
+    EXPECT_EQ(counters.covered, 0u);
+    EXPECT_TRUE(scene.occluded({{3.5f, 3.2f, -1}, {0, 0, 1}}, &counters));
+    EXPECT_EQ(counters.global_searches, 2u);
+  }
+}
+
 TEST(Explain, LeadsWithWhatPaysSoonest) {
   AreaReport sun{"sun", 12, 0.25, 3'500'000, "coverage", "any hit: a\nclosest hit: b\n", {}, {20, 5, 10}, 0.25};
   sun.times = {{{true, true}, 100, {99, 0, 1}, 20, 120, 2.5e6},
