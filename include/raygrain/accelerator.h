@@ -83,7 +83,7 @@ struct LocalTree {
   double predicted_cost = 0;
   RayMeasure measure = {};  // the tree's own, or AcceleratorOptions::wide_measure; decides how its wide form is made
   std::optional<FrameTree> in_ray_space = std::nullopt;  // LocalSpace::kRay, where some ray is sent there
-  double build_seconds = 0;
+  double build_seconds = 0;  // of an accelerator's: with the wide form, ray space, and an equal part of the corners
 };
 
 /// Who answered the rays of an area: those that its coverage or its tree answered, and those that are the area's and
@@ -148,11 +148,13 @@ struct AreaTimes {
 /// What an area costs and saves.
 struct AreaReport {
   std::string name;
-  size_t triangles = 0;      // of the local tree; some may be there more than once
-  double build_seconds = 0;  // of everything that the area has, by the clock, on the threads and beside what built it
-  size_t memory_bytes = 0;   // ... likewise, without what areas share
-  std::string structures;    // e.g. "coverage, tree in ray space (shear_y), tree"
-  std::string routes;        // who answers which rays, and at what predicted cost
+  size_t triangles = 0;  // of the local tree; some may be there more than once
+  /// Of everything that the area has, and an equal part of what areas share (neighbours and corners of triangles, the
+  /// top level, sampling rays to choose routes): by the clock, on the threads and beside what was built meanwhile.
+  double build_seconds = 0;
+  size_t memory_bytes = 0;  // of everything that the area has, without what areas share
+  std::string structures;   // e.g. "coverage, tree in ray space (shear_y), tree"
+  std::string routes;       // who answers which rays, and at what predicted cost
   /// By question, in the order of their names above; none where the area has no structures, and without questions that
   /// it has no rays for. Any hits go from surfaces in the region to the light or point; closest hits start where the
   /// area's rays do: on the face (plane area), at the point (point area).

@@ -12,6 +12,7 @@
 #include "accel/build_trees.h"
 #include "accel/route_costs.h"
 #include "accel/search.h"
+#include "base/timer.h"
 
 namespace raygrain {
 
@@ -91,7 +92,9 @@ Accelerator::Accelerator(TriangleMesh mesh, std::vector<InfluenceArea> areas, co
   for (size_t i = 0; i < areas.size(); ++i) validate(areas[i], area_label(i, areas[i]));
   auto shared = std::make_shared<const TriangleMesh>(std::move(mesh));
   BuiltTrees trees = build_trees(*shared, areas, options);
+  const Timer timer;
   AreaTable table = make_area_table(trees.locals, options.top_level);
+  const double table_seconds = timer.seconds();
   std::vector<AreaGeometry> geometries(areas.begin(), areas.end());
   std::vector<Coverage> coverages = build_coverages(shared, areas, options);
   auto parts = std::make_shared<Parts>(
@@ -99,6 +102,7 @@ Accelerator::Accelerator(TriangleMesh mesh, std::vector<InfluenceArea> areas, co
             std::move(table), options.traversal, std::move(geometries), std::move(coverages)});
   const bool by_cost = options.routing == Routing::kCheapest && options.traversal == Traversal::kWide;
   parts->choose_routes(by_cost, options.samples, options.isa.value_or(default_isa()));
+  parts->shared_seconds += table_seconds;
   parts_ = std::move(parts);
 }
 
@@ -126,6 +130,7 @@ Accelerator Accelerator::with_local_trees(std::vector<LocalTree> locals, const T
 }
 
 void Accelerator::Parts::choose_routes(bool by_cost, const SampleSource& samples, Isa isa) {
+  const Timer timer;
   if (geometries.empty()) geometries = areas.geometries;
   const auto trace = [this](bool is_any, const Ray& ray, const Route& route, AcceleratorCounters& counters) {
     if (is_any)
@@ -144,6 +149,7 @@ void Accelerator::Parts::choose_routes(bool by_cost, const SampleSource& samples
     searches[i].drop_fast_forms();
     locals[i].in_ray_space.reset();
   }
+  shared_seconds = timer.seconds();
 }
 
 std::span<const Coverage> Accelerator::coverages() const {

@@ -33,6 +33,7 @@ struct Accelerator::Parts {
   std::vector<AreaCosts> costs = {};          // ... likewise
   Routes routes = {};
   ManyShares many_shares = {};
+  double shared_seconds = 0;  // of the build: top level, tables, and what chose the routes
 
   /// Chooses the routes: by cost, or whatever there is.
   void choose_routes(bool by_cost, const SampleSource& samples, Isa isa);

@@ -132,8 +132,10 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
   std::vector<std::optional<SearchTree>> searches(locals);
   AreaBuilds own{mesh, options, LocalRecipes(options), nullptr, nullptr};
   const bool ends_samples = locals > 0 && own.recipes.need_hits(options.registry);
+  const Timer timer;
   if (options.space == LocalSpace::kRay && options.traversal == Traversal::kWide)
     own.corners = std::make_shared<const TriangleCorners>(mesh);
+  const double corners_seconds = timer.seconds();
   const auto build = [&](size_t task) {
     if (task > 0) {
       searches[task - 1] = own.build(areas[task - 1], progress.part(task, 0, kBuilt), trees.locals[task - 1]);
@@ -153,6 +155,7 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
   parallel_for(locals + 1 - first, 1, options.threads, [&](size_t begin, size_t end) {
     for (size_t task = begin; task < end; ++task) build(first + task);
   });
+  for (LocalTree& local : trees.locals) local.build_seconds += corners_seconds / static_cast<double>(locals);
   for (std::optional<SearchTree>& search : searches) trees.local_searches.push_back(std::move(*search));
   return trees;
 }

@@ -134,6 +134,7 @@ AreaReport Accelerator::Parts::describe(size_t area) const {
     report.build_seconds = coverages[area].build_seconds();
   }
   if (area < locals.size()) describe_local(area, report);
+  report.build_seconds += shared_seconds / static_cast<double>(geometries.size());
   report.routes = routes_text(routes, costs, many_shares, area);
   return report;
 }
