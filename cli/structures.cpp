@@ -20,6 +20,12 @@ FrameKind parse_frame(const std::string& text) {
   fail_usage("--frame", "unknown frame '" + text + "'", "Known: rotation, shear_x, shear_y, shear_z, projective");
 }
 
+RayDensity parse_density(const std::string& text) {
+  if (text == "near-plane") return RayDensity::kNearPlane;
+  if (text == "solid-angle") return RayDensity::kSolidAngle;
+  fail_usage("--density", "unknown density '" + text + "'", "Known: near-plane, solid-angle");
+}
+
 Routing parse_routing(const std::string& text) {
   if (text == "cheapest") return Routing::kCheapest;
   if (text == "areas") return Routing::kAreas;
@@ -31,6 +37,8 @@ void check_structures(const StructureOptions& options, const AcceleratorOptions&
   const bool in_ray_space = result.space == LocalSpace::kRay, binary = result.traversal == Traversal::kBinary;
   if (result.frame && !in_ray_space)
     fail_usage("--frame", "is for trees in ray space, and there are none", "Add --space ray");
+  if (result.density != RayDensity::kNearPlane && !in_ray_space)
+    fail_usage("--density", "is for trees in ray space, and there are none", "Add --space ray");
   if (options.no_coverage && result.space == LocalSpace::kNone)
     fail_usage("--no-coverage", "leaves areas nothing under --space none", "Leave one of them out");
   if (binary && in_ray_space)
@@ -48,6 +56,8 @@ void add_structure_options(Arguments& arguments, StructureOptions& options, Rout
   arguments.text("--frame", "NAME", options.frame,
                  "Frame of trees in ray space, where it suits: rotation, shear_x, shear_y, shear_z or projective "
                  "[the cheapest]");
+  arguments.text("--density", "NAME", options.density,
+                 "Of point areas' rays, for trees in ray space: near-plane, or solid-angle (isotropic) [near-plane]");
   arguments.text("--routing", "NAME", options.routing,
                  std::string("Who answers an area's rays: its structures (areas), or whoever is predicted to cost "
                              "least (cheapest) [") +
@@ -57,6 +67,7 @@ void add_structure_options(Arguments& arguments, StructureOptions& options, Rout
 
 std::string given_structure_option(const StructureOptions& options) {
   if (options.space != StructureOptions{}.space) return "--space";
+  if (options.density != StructureOptions{}.density) return "--density";
   if (!options.frame.empty()) return "--frame";
   if (!options.routing.empty()) return "--routing";
   return options.no_coverage ? "--no-coverage" : "";
@@ -64,6 +75,7 @@ std::string given_structure_option(const StructureOptions& options) {
 
 void set_structures(const StructureOptions& options, AcceleratorOptions& result) {
   result.space = parse_space(options.space);
+  result.density = parse_density(options.density);
   if (!options.frame.empty()) result.frame = parse_frame(options.frame);
   if (!options.routing.empty()) result.routing = parse_routing(options.routing);
   if (options.no_coverage) result.coverage.reset();

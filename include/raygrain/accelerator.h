@@ -59,7 +59,8 @@ struct AcceleratorOptions {
   std::string wide_measure = {};
   Traversal traversal = Traversal::kWide;
   LocalSpace space = LocalSpace::kWorld;
-  Routing routing = Routing::kCheapest;  // under Traversal::kBinary always kAreas
+  Routing routing = Routing::kCheapest;         // under Traversal::kBinary always kAreas
+  RayDensity density = RayDensity::kNearPlane;  // of point areas' rays, for their trees under LocalSpace::kRay
   std::optional<FrameKind> frame;  // of areas that it suits; the others, and without one: the cheapest by prediction
   std::optional<Isa> isa;          // of wide trees; default_isa() without one
   /// Of each area, over all triangles that its rays can meet: answers batches of rays that share its direction or its

@@ -80,12 +80,19 @@ class FrameTree {
   std::shared_ptr<const Data> data_;
 };
 
+/// How dense rays through a point are: what a projective frame's tree is made for.
+enum class RayDensity : uint8_t {
+  kNearPlane,   // the same everywhere on the near plane, so as many as a box is large in the frame
+  kSolidAngle,  // the same for every solid angle, as of an isotropic light: fewer towards the window's corners
+};
+
 struct FrameBuildOptions {
   /// Face weights of the measure in the frame; the z term that is added to them, as a share of the xy term of a cube as
   /// wide and high as the scene's image: without it nothing splits along the rays, and the first hit prunes too little.
   Vec3d weights{0, 0, 1};
   float z_term = 0.1f;
-  bool spatial = true;  // cut triangles where that pays
+  RayDensity density = RayDensity::kNearPlane;  // kSolidAngle: the xy term is the solid angle of the box's xy extent
+  bool spatial = true;                          // cut triangles where that pays
   unsigned threads = 0;
   std::optional<Isa> isa = std::nullopt;
 };
@@ -94,7 +101,8 @@ struct FrameBuildOptions {
 /// this frame cannot be made (see FrameTree). `cost` gets the estimated cost of all rays of the distribution, up to a
 /// factor that does not depend on the frame: less is better. Throws Error: kUsage for no corners, an id that they do
 /// not have, an instruction set that this CPU lacks, weights or a z term that are negative or not finite, weights.z =
-/// 0, and weights that are no float multiples of weights.z; kLimit beyond 2^33 bytes.
+/// 0, weights that are no float multiples of weights.z, and kSolidAngle in a frame that is not projective; kLimit
+/// beyond 2^33 bytes.
 std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr<const TriangleCorners> corners,
                                           std::span<const uint32_t> triangles, const FrameBuildOptions& options = {},
                                           double* cost = nullptr);

@@ -21,6 +21,11 @@ RayMeasure directional_measure(Vec3 direction);
 /// measure / total is the absolute hit probability; kNone: total = the root's.
 RayMeasure projected_area_measure(const InfluenceArea& area, Culling culling = Culling::kWindow);
 
+/// The solid angle under which a point area's eye sees a box: rays of an isotropic light, which the projected area
+/// overrates up to 5.2 times towards the corners of a window of 90 degrees. kWindow: culled to the window, total = the
+/// window's solid angle; kNone: total = the root's. For a plane area projected_area_measure: so it looks from far away.
+RayMeasure solid_angle_measure(const InfluenceArea& area, Culling culling = Culling::kWindow);
+
 /// Counts the sample rays that meet a box (as infinite lines cut to [tmin, tmax]); total = their number.
 RayMeasure sampled_measure(std::span<const Ray> rays);
 

@@ -59,7 +59,7 @@ struct BuilderEntry {
 
 /// A value: copy the default one and add rows to it to make own heuristics available by name.
 struct Registry {
-  std::vector<MeasureEntry> measures;          // SAH, PAH, PAH-UNCULLED, DIR, SAMPLED, VISIBLE
+  std::vector<MeasureEntry> measures;          // SAH, PAH, PAH-UNCULLED, DIR, SOLID, SAMPLED, VISIBLE
   std::vector<OrientationEntry> orientations;  // LSPH, SPFH, ALL, ROBIN
   std::vector<BuilderEntry> builders;          // paper, binned, sweep, spatial, subset
 };

@@ -47,6 +47,7 @@ struct FrameTrees {
     const RayFrame frame = *area_frame(kind, area);
     FrameBuildOptions weighted = options;
     weighted.weights = weights_for(frame, area, samples);
+    if (!frame.is_projective()) weighted.density = RayDensity::kNearPlane;
     return build_frame_tree(frame, corners, triangles, weighted, cost);
   }
 };
@@ -75,7 +76,8 @@ std::optional<FrameTree> build_area_frame_tree(const InfluenceArea& area,
   std::vector<FrameKind> kinds = frame_kinds(geometry);
   if (options.frame && std::ranges::count(kinds, *options.frame) != 0) kinds = {*options.frame};
   if (kinds.empty()) return {};
-  const FrameTrees trees{geometry, corners, samples, {.threads = options.threads, .isa = options.isa}};
+  const FrameTrees trees{
+      geometry, corners, samples, {.density = options.density, .threads = options.threads, .isa = options.isa}};
   return trees.build(cheapest(trees, kinds, triangles), triangles);
 }
 

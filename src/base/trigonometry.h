@@ -1,5 +1,5 @@
-// Sine, cosine and tangent from +, -, *, / alone, so that derived geometry has the same bits on every machine and
-// library.
+// Sine, cosine, tangent and arctangent from +, -, *, / alone, so that derived geometry has the same bits on every
+// machine and library.
 #pragma once
 
 namespace raygrain {
@@ -19,5 +19,9 @@ SineCosine sine_cosine(double angle);
 
 /// tan(angle), |angle| < pi / 2.
 double tangent(double angle);
+
+/// The angle of the point (x, y) seen from the origin, from the x axis towards y, in [-pi, pi]; 0 for the origin
+/// itself. Relative error below 1e-15 for |x|, |y| <= 1e300 whose quotient does not underflow.
+double arctangent(double y, double x);
 
 }  // namespace raygrain

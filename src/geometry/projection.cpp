@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "raygrain/area.h"
+#include "raygrain/error.h"
 
 #include "geometry/clip.h"
+#include "geometry/solid_angle.h"
 
 namespace raygrain {
 
@@ -38,7 +40,7 @@ struct Outline {
     min_x = std::min(min_x, p.x), max_x = std::max(max_x, p.x);
     min_y = std::min(min_y, p.y), max_y = std::max(max_y, p.y);
   }
-  double area() const { return shoelace_area({points.data(), count}); }
+  std::span<const Vec2d> span() const { return {points.data(), count}; }
   ConvexPolygon polygon() const {
     ConvexPolygon result;
     for (size_t i = 0; i < count; ++i) result.push(points[i]);
@@ -115,17 +117,31 @@ double face_area_sum(Vec3d weights, Vec3d size) {
 
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
-// Area of an outline inside the window.
-double culled_area(const Outline& outline, Vec2d half) {
+// How outlines are measured: by their area, or by their solid angle at the eye.
+struct ByArea {
+  static double size(std::span<const Vec2d> outline) { return shoelace_area(outline); }
+  static double culled_size(const ConvexPolygon& outline, Vec2d half) {
+    return std::min(polygon_area(clip_to_window(outline, half)), 4 * half.x * half.y);
+  }
+};
+
+struct BySolidAngle {
+  static double size(std::span<const Vec2d> outline) { return solid_angle(outline); }
+  static double culled_size(const ConvexPolygon& outline, Vec2d half) {
+    const ConvexPolygon inside = clip_to_window(outline, half);
+    const bool covers_window = polygon_area(inside) >= 4 * half.x * half.y;
+    return covers_window ? rectangle_solid_angle(half) : solid_angle(inside.span());
+  }
+};
+
+// Of the part of an outline inside the window.
+template <class By>
+double culled_size(const Outline& outline, Vec2d half) {
   if (outline.min_x >= -half.x && outline.max_x <= half.x && outline.min_y >= -half.y && outline.max_y <= half.y)
-    return outline.area();
+    return By::size(outline.span());
   if (outline.min_x >= half.x || outline.max_x <= -half.x || outline.min_y >= half.y || outline.max_y <= -half.y)
     return 0;
-  return std::min(polygon_area(clip_to_window(outline.polygon(), half)), 4 * half.x * half.y);
-}
-
-double culled_area(const ConvexPolygon& hull, Vec2d half) {
-  return std::min(polygon_area(clip_to_window(hull, half)), 4 * half.x * half.y);
+  return By::culled_size(outline.polygon(), half);
 }
 
 double plane_area(const Frame& frame, Vec2d half, const Bounds& box, Culling culling) {
@@ -137,7 +153,22 @@ double plane_area(const Frame& frame, Vec2d half, const Bounds& box, Culling cul
   const double reach_x = half_extent(frame.right, size), reach_y = half_extent(frame.up, size);
   if (x + reach_x <= half.x && y + reach_y <= half.y) return std::min(whole, 4 * half.x * half.y);
   if (x - reach_x >= half.x || y - reach_y >= half.y) return 0;
-  return std::min(culled_area(plane_outline(frame, box), half), whole);  // exactly 0 for flat boxes seen edge-on
+  return std::min(culled_size<ByArea>(plane_outline(frame, box), half),
+                  whole);  // exactly 0 for flat boxes seen edge-on
+}
+
+// What a point area's rays see of a box.
+template <class By>
+double point_size(const Frame& frame, double near_z, Vec2d half, const Bounds& box, Culling culling) {
+  if (is_edge_on(frame.origin, box)) return 0;
+  const LocalBox local(frame, box);
+  if (local.min_depth() >= near_z) {
+    const Outline outline = point_outline(local, frame.origin, box);
+    return culling == Culling::kNone ? By::size(outline.span()) : culled_size<By>(outline, half);
+  }
+  if (local.max_depth() < near_z) return 0;
+  const ConvexPolygon hull = clipped_hull(local, near_z, kUnbounded, true);
+  return culling == Culling::kNone ? By::size(hull.span()) : By::culled_size(hull, half);
 }
 
 }  // namespace
@@ -158,15 +189,17 @@ ConvexPolygon AreaGeometry::projected_hull(const Bounds& box, Culling culling) c
 double AreaGeometry::projected_area(const Bounds& box, Culling culling) const {
   if (is_empty(box)) return 0;
   if (is_plane()) return plane_area(frame_, window_half_, box, culling);
-  if (is_edge_on(frame_.origin, box)) return 0;
-  const LocalBox local(frame_, box);
-  if (local.min_depth() >= near_z_) {
-    const Outline outline = point_outline(local, frame_.origin, box);
-    return culling == Culling::kNone ? outline.area() : culled_area(outline, window_half_);
-  }
-  if (local.max_depth() < near_z_) return 0;
-  const ConvexPolygon hull = clipped_hull(local, near_z_, kUnbounded, true);
-  return culling == Culling::kNone ? polygon_area(hull) : culled_area(hull, window_half_);
+  return point_size<ByArea>(frame_, near_z_, window_half_, box, culling);
+}
+
+double AreaGeometry::solid_angle(const Bounds& box, Culling culling) const {
+  if (is_plane()) throw Error(ErrorCode::kUsage, area_.name, "is a plane area: its rays have no eye");
+  return is_empty(box) ? 0 : point_size<BySolidAngle>(frame_, near_z_, window_half_, box, culling);
+}
+
+double AreaGeometry::window_solid_angle() const {
+  if (is_plane()) throw Error(ErrorCode::kUsage, area_.name, "is a plane area: its rays have no eye");
+  return rectangle_solid_angle(window_half_);
 }
 
 double AreaGeometry::hit_probability(const Bounds& box) const {
@@ -176,7 +209,7 @@ double AreaGeometry::hit_probability(const Bounds& box) const {
   if (highest < near_z_ || lowest > far_z_) return 0;
   const double whole = projected_area(box, Culling::kWindow);
   if (whole == 0 || (lowest >= near_z_ && highest <= far_z_)) return std::min(whole / window_area(), 1.0);
-  const double part = culled_area(clipped_hull(local, near_z_, far_z_, !is_plane()), window_half_);
+  const double part = ByArea::culled_size(clipped_hull(local, near_z_, far_z_, !is_plane()), window_half_);
   return std::min(std::min(part, whole) / window_area(), 1.0);
 }
 

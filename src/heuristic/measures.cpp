@@ -34,4 +34,17 @@ RayMeasure projected_area_measure(const InfluenceArea& area, Culling culling) {
       [geometry, culling](const Bounds& box) { return to_measure(geometry->projected_area(box, culling)); }, total);
 }
 
+RayMeasure solid_angle_measure(const InfluenceArea& area, Culling culling) {
+  const auto geometry = std::make_shared<const AreaGeometry>(area);
+  if (geometry->is_plane()) return projected_area_measure(area, culling);
+  if (culling == Culling::kNone)
+    return {[geometry](const Bounds& box) { return static_cast<float>(geometry->solid_angle(box, Culling::kNone)); }};
+  const double total = geometry->window_solid_angle();
+  return RayMeasure(
+      [geometry, total](const Bounds& box) {
+        return static_cast<float>(std::min(geometry->solid_angle(box, Culling::kWindow), total));
+      },
+      static_cast<float>(total));
+}
+
 }  // namespace raygrain

@@ -61,6 +61,8 @@ std::vector<MeasureEntry> default_measures() {
       {"PAH-UNCULLED", "projected area, not culled", true, false,
        [](const HeuristicInput& input) { return projected_area_measure(*input.area, Culling::kNone); }},
       {"DIR", "projected area along one direction as three face weights", true, false, make_directional},
+      {"SOLID", "solid angle at the eye, culled to the area's window; for a plane area projected area", true, false,
+       [](const HeuristicInput& input) { return solid_angle_measure(*input.area, Culling::kWindow); }},
       {"SAMPLED", "sample rays that meet the box", false, true,
        [](const HeuristicInput& input) { return sampled_measure(input.samples); }},
       {"VISIBLE", "projected area (without an area: surface area), weighted by the share of sample rays alive there",

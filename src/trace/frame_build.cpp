@@ -9,6 +9,7 @@
 #include "base/parallel.h"
 #include "base/sizes.h"
 #include "build/estimate.h"
+#include "trace/frame_density.h"
 
 namespace raygrain {
 namespace {
@@ -53,6 +54,23 @@ Vec3 weights_of(const FrameBuildOptions& options, const Bounds& scene) {
 
 constexpr uint32_t kMostFrameTriangles = 16;  // in a leaf
 
+RayMeasure measure_of(const FrameBuildOptions& options, const Bounds& scene) {
+  const Vec3 weights = weights_of(options, scene);
+  return options.density == RayDensity::kSolidAngle ? solid_face_measure(weights) : face_weight_measure(weights);
+}
+
+void check_options(const FrameBuildOptions& options, const RayFrame& frame) {
+  const auto is_good = [](double term) { return term >= 0 && std::isfinite(term); };
+  const auto [x, y, z] = options.weights;
+  if (!(is_good(x) && is_good(y) && is_good(z) && z > 0 && is_good(static_cast<double>(options.z_term))))
+    throw Error(ErrorCode::kUsage, "FrameBuildOptions",
+                "weights and z_term must be finite and not negative, weights.z not zero");
+  if (options.density == RayDensity::kSolidAngle && !frame.is_projective())
+    throw Error(ErrorCode::kUsage, "FrameBuildOptions",
+                "solid angles are about rays through a point, and those of this frame are parallel",
+                "Take RayDensity::kNearPlane");
+}
+
 bool fits_floats(const Bounds& scene) {
   constexpr float kLeast = 0x1p-30f, kGreatest = 0x1p30f;
   const auto size = [&](int axis) { return std::max(std::abs(scene.lo[axis]), std::abs(scene.hi[axis])); };
@@ -67,11 +85,7 @@ std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr
                                           double* cost) {
   if (corners == nullptr) throw Error(ErrorCode::kUsage, "build_frame_tree", "has no corners");
   check_numbers("build_frame_tree", triangles, corners->size(), "triangles");
-  const auto is_good = [](double term) { return term >= 0 && std::isfinite(term); };
-  const auto [x, y, z] = options.weights;
-  if (!(is_good(x) && is_good(y) && is_good(z) && z > 0 && is_good(static_cast<double>(options.z_term))))
-    throw Error(ErrorCode::kUsage, "FrameBuildOptions",
-                "weights and z_term must be finite and not negative, weights.z not zero");
+  check_options(options, frame);
   FramePrimitives primitives = primitives_in(frame, *corners, triangles, options.threads);
   Bounds scene;
   for (const Bounds& box : primitives.bounds) scene.extend(box.lo), scene.extend(box.hi);
@@ -79,7 +93,7 @@ std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr
   if (!fits_floats(scene)) return {};
 
   BuildOptions build;
-  build.strategy.measure = face_weight_measure(weights_of(options, scene));
+  build.strategy.measure = measure_of(options, scene);
   build.parameters.bins = 32;
   build.parameters.max_levels = 64;
   build.threads = options.threads;

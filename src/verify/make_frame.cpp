@@ -35,12 +35,14 @@ std::optional<FrameUnderTest> make_frame_tree(const StructureSpec& spec, const V
   if (!frame) return {};
   std::vector<uint32_t> ids(scene.mesh->triangle_count());
   std::iota(ids.begin(), ids.end(), 0u);
-  const auto tree = build_frame_tree(*frame, std::make_shared<const TriangleCorners>(*scene.mesh), ids,
-                                     {.weights = spec.of_area ? frame_area_weights(*frame, geometry) : Vec3d{0, 0, 1},
-                                      .z_term = spec.seed % 3 == 0 ? 0.0f : 0.1f,
-                                      .spatial = spec.spatial,
-                                      .threads = 1,
-                                      .isa = parse_isa(spec.isa)});
+  const auto tree = build_frame_tree(
+      *frame, std::make_shared<const TriangleCorners>(*scene.mesh), ids,
+      {.weights = spec.of_area ? frame_area_weights(*frame, geometry) : Vec3d{0, 0, 1},
+       .z_term = spec.seed % 3 == 0 ? 0.0f : 0.1f,
+       .density = frame->is_projective() && spec.seed % 2 != 0 ? RayDensity::kSolidAngle : RayDensity::kNearPlane,
+       .spatial = spec.spatial,
+       .threads = 1,
+       .isa = parse_isa(spec.isa)});
   if (!tree) return {};
   return FrameUnderTest{*tree, spec.of_area ? std::optional(geometry) : std::nullopt};
 }

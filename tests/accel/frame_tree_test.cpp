@@ -80,11 +80,12 @@ struct Tally {
 
 /// The same tree for every instruction set.
 std::vector<FrameTree> on_every_isa(const RayFrame& frame, const std::shared_ptr<const TriangleCorners>& mesh,
-                                    std::span<const uint32_t> triangles, bool spatial) {
+                                    std::span<const uint32_t> triangles, bool spatial,
+                                    RayDensity density = RayDensity::kNearPlane) {
   std::vector<FrameTree> trees;
   for (const Isa isa : supported_isas()) {
-    const auto tree =
-        build_frame_tree(frame, mesh, triangles, {.z_term = spatial ? 0.1f : 0.0f, .spatial = spatial, .isa = isa});
+    const auto tree = build_frame_tree(
+        frame, mesh, triangles, {.z_term = spatial ? 0.1f : 0.0f, .density = density, .spatial = spatial, .isa = isa});
     if (tree) trees.push_back(*tree);
   }
   return trees;
@@ -238,7 +239,10 @@ TEST(FrameTree, RaysOfAreasEqualBruteForce) {
       keep_distinct(rays);
       std::vector<std::vector<FrameTree>> frames;
       for (const FrameKind kind : frame_kinds(geometry)) {
-        std::vector<FrameTree> trees = on_every_isa(*area_frame(kind, geometry), corners, ids, f % 2 == 0);
+        const RayFrame frame = *area_frame(kind, geometry);
+        const bool is_solid = frame.is_projective() && f / 2 % 2 == 0;
+        std::vector<FrameTree> trees =
+            on_every_isa(frame, corners, ids, f % 2 == 0, is_solid ? RayDensity::kSolidAngle : RayDensity::kNearPlane);
         if (!trees.empty()) frames.push_back(std::move(trees));
       }
       if (frames.empty()) continue;
@@ -280,6 +284,7 @@ TEST(FrameTree, EmptyTreesAndInvalidRays) {
   }
   EXPECT_EQ(tree.use_of({{0, 0, 0}, {1, 0, 0}}), FrameUse::kUnfit);
   EXPECT_THROW(FrameTree(frame, {}, nullptr), Error);
+  EXPECT_THROW(build_frame_tree(frame, corners, {}, {.density = RayDensity::kSolidAngle}), Error);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "raygrain/rays.h"
 
 #include "analyze/small_scenes.h"
+#include "support/isotropic_rays.h"
 
 namespace raygrain {
 namespace {
@@ -37,12 +38,15 @@ std::vector<Case> areas() {
 }
 
 /// How far the mean real cost of matched rays is from the estimate, in standard errors.
-double z_score(const Bvh& bvh, const TriangleMesh& mesh, const InfluenceArea& area, const RayMeasure& measure,
-               uint64_t seed) {
-  const std::vector<Ray> rays = cast_rays(AreaRays{.area = area}, kRays, seed);
+double z_score(const Bvh& bvh, const TriangleMesh& mesh, std::span<const Ray> rays, const RayMeasure& measure) {
   const TraceStats trace = analyze_rays(bvh, mesh, rays);
   const double error = trace.real_cost_deviation / std::sqrt(static_cast<double>(kRays));
   return (trace.real_cost - analyze(bvh, measure).estimated_cost) / error;
+}
+
+double z_score(const Bvh& bvh, const TriangleMesh& mesh, const InfluenceArea& area, const RayMeasure& measure,
+               uint64_t seed) {
+  return z_score(bvh, mesh, cast_rays(AreaRays{.area = area}, kRays, seed), measure);
 }
 
 TEST(Prediction, ProjectedAreaIsWhatMatchedRaysPay) {
@@ -64,6 +68,21 @@ TEST(Prediction, ProjectedAreaIsWhatMatchedRaysPay) {
   RecordProperty("mean_z_square", std::to_string(mean_square));
   EXPECT_GT(mean_square, 0.4);  // 35 squares of standard normals have mean 1 +- 0.24
   EXPECT_LT(mean_square, 1.8);
+}
+
+// Amid the scene, and outside where it fills the window's middle alone. There PAH is far off in its estimate.
+TEST(Prediction, SolidAngleIsWhatIsotropicRaysPay) {
+  for (const Vec3 direction : {Vec3{0, 0, 1}, Vec3{1, 1, 1}})
+    for (const InfluenceArea& area :
+         {InfluenceArea{"amid", PointArea{{1, 0, -1}, direction, {0, 1, 0}, 90, 90, 0.5f, 30}},
+          InfluenceArea{"outside", PointArea{direction * -12.0f, direction, {0, 1, 0}, 90, 90, 0.5f, 60}}}) {
+      SCOPED_TRACE(area.name);
+      const TriangleMesh mesh = test::random_triangles({{-6, -6, -6}, {6, 6, 6}}, 300, 1.0, 9);
+      const LocalTree local = build_local_tree(mesh, area, {"SOLID", "ALL", "binned", {}}, default_registry());
+      const std::vector<Ray> rays = test::isotropic_rays(area, kRays, 11);
+      EXPECT_LT(std::abs(z_score(*local.tree, mesh, rays, solid_angle_measure(area))), 4);
+      EXPECT_GT(std::abs(z_score(*local.tree, mesh, rays, projected_area_measure(area))), 6);
+    }
 }
 
 /// A plane area amid the scene: its measure projects whole boxes, so parts behind the start count as well and the

@@ -38,6 +38,25 @@ TEST(Trigonometry, TangentHasSmallRelativeError) {
   }
 }
 
+TEST(Trigonometry, ArctangentHasSmallRelativeError) {
+  Random random(4);
+  for (int i = 0; i < 100000; ++i) {
+    const double x = random.uniform(-1, 1) * std::pow(10.0, random.uniform(-9, 9)), y = random.uniform(-1, 1);
+    const double expected = std::atan2(y, x);
+    ASSERT_NEAR(arctangent(y, x), expected, 1e-15 * std::abs(expected)) << y << ' ' << x;
+  }
+}
+
+TEST(Trigonometry, ArctangentKnowsTheAxes) {
+  EXPECT_EQ(arctangent(0, 0), 0);
+  EXPECT_EQ(arctangent(0, 3), 0);
+  EXPECT_EQ(arctangent(0, -3), kPi);
+  EXPECT_EQ(arctangent(2, 0), kPi / 2);
+  EXPECT_EQ(arctangent(-2, 0), -kPi / 2);
+  EXPECT_EQ(arctangent(1e300, 1e300), kPi / 4);
+  EXPECT_EQ(arctangent(1e-300, 1), 1e-300);
+}
+
 TEST(Trigonometry, IsExactAtZeroAndOddOrEven) {
   EXPECT_EQ(sine_cosine(0).sine, 0);
   EXPECT_EQ(sine_cosine(0).cosine, 1);

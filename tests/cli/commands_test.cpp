@@ -204,6 +204,13 @@ TEST(Explain, SaysOfEachQuestionWhatItCostsAndSaves) {
   EXPECT_EQ(json.at("rays"), 0);
 }
 
+TEST(Explain, TakesTreesInRaySpaceForIsotropicLight) {
+  const RunResult result = run_program({"explain", kSmallScene, "--light", "1,30,2", "--samples", "20", "--space",
+                                        "ray", "--density", "solid-angle", "--json", "-"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(Json::parse(result.output).at("areas").size(), 6u);
+}
+
 TEST(Explain, CountsTheRaysThatAreGiven) {
   const TemporaryFolder folder;
   write_file(folder.file("quad.obj"), "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\nf 1 2 3\nf 1 3 4\n");

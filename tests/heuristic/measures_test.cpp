@@ -8,6 +8,7 @@
 #include "raygrain/rays.h"
 
 #include "geometry/area_support.h"
+#include "support/isotropic_rays.h"
 
 namespace raygrain {
 namespace {
@@ -87,11 +88,14 @@ TEST(Measures, ManyBoxesAtOnceAreTheSameAsOneByOne) {
   std::vector<Bounds> boxes;
   for (int i = 0; i < 100; ++i) boxes.push_back(random_box(AreaGeometry(area), random));
   const std::vector<Ray> rays = cast_rays(AreaRays{area}, 100, 1);
-  for (const RayMeasure& measure :
-       {surface_area_measure(), directional_measure({1, 2, 3}), projected_area_measure(area), sampled_measure(rays)}) {
+  for (const RayMeasure& measure : {surface_area_measure(), directional_measure({1, 2, 3}),
+                                    projected_area_measure(area), solid_angle_measure(area), sampled_measure(rays)}) {
     std::vector<float> out(boxes.size());
     measure(boxes, out);
     for (size_t i = 0; i < boxes.size(); ++i) EXPECT_EQ(out[i], measure(boxes[i]));
+    const std::vector<float> first = out;
+    measure(boxes, out);
+    EXPECT_EQ(out, first);
   }
 }
 
@@ -100,6 +104,85 @@ TEST(Measures, HugeBoxesAreFinite) {
   EXPECT_TRUE(std::isfinite(projected_area_measure({"z", PlaneArea{}}, Culling::kNone)(huge)));
   EXPECT_TRUE(std::isfinite(projected_area_measure({"z", PointArea{}}, Culling::kNone)(huge)));
   EXPECT_EQ(projected_area_measure({"z", PlaneArea{}})(huge), 4);
+  EXPECT_EQ(solid_angle_measure({"z", PointArea{}})(huge), solid_angle_measure({"z", PointArea{}}).total(huge));
+  EXPECT_LE(solid_angle_measure({"z", PointArea{}}, Culling::kNone)(huge), 6.2831855f);
+}
+
+constexpr float kSphere = 4 * 3.14159265f;
+
+TEST(SolidAngleMeasure, CubeFacesShareTheSphere) {
+  const Bounds cube{{-1, -2, -3}, {3, 2, 1}};
+  const std::vector<InfluenceArea> areas = point_light_areas("lamp", {1, 0, -1}, cube);
+  double sum = 0;
+  for (const InfluenceArea& area : areas) {
+    const RayMeasure measure = solid_angle_measure(area);
+    EXPECT_FLOAT_EQ(measure.total(cube), kSphere / 6);
+    EXPECT_EQ(measure(cube), measure.total(cube));  // the lamp is in it
+    for (int axis = 0; axis < 3; ++axis)
+      for (const float side : {cube.lo[axis], cube.hi[axis]}) {
+        Bounds face = cube;
+        face.lo[axis] = face.hi[axis] = side;
+        sum += static_cast<double>(measure(face));
+      }
+  }
+  EXPECT_NEAR(sum, static_cast<double>(kSphere), 1e-5);
+}
+
+// Tiny boxes in the middle and in a corner, of equal projected area: 1 and 1 / (3 sqrt 3) of it.
+TEST(SolidAngleMeasure, CornersCountLess) {
+  const InfluenceArea area{"lamp", PointArea{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}, 90, 90, 0.1f, 100}};
+  const RayMeasure solid = solid_angle_measure(area), projected = projected_area_measure(area);
+  const auto ratio = [&](float x, float y) {
+    const Bounds box{{x - 0.0005f, y - 0.0005f, 1}, {x + 0.0005f, y + 0.0005f, 1}};
+    return solid(box) / projected(box);
+  };
+  EXPECT_NEAR(ratio(0, 0), 1, 1e-6);
+  EXPECT_NEAR(ratio(0.9995f, 0.9995f), 1 / (3 * std::sqrt(3.0f)), 2e-4);
+  EXPECT_NEAR(ratio(0, 0) / ratio(-0.9995f, 0.9995f), 5.196, 6e-3);
+}
+
+TEST(SolidAngleMeasure, OfAPlaneAreaIsTheProjectedArea) {
+  Random random(9);
+  for (int i = 0; i < 200; ++i) {
+    const InfluenceArea area = random_area(random, true);
+    const Bounds box = random_box(AreaGeometry(area), random);
+    for (const Culling culling : {Culling::kWindow, Culling::kNone}) {
+      const RayMeasure solid = solid_angle_measure(area, culling), projected = projected_area_measure(area, culling);
+      EXPECT_EQ(solid(box), projected(box));
+      EXPECT_EQ(solid.total(box), projected.total(box));
+    }
+  }
+}
+
+// Isotropic rays meet boxes as often as their solid angles say: those of all kinds, cut by the near plane and windows.
+TEST(SolidAngleMeasure, AgreesWithIsotropicRays) {
+  constexpr size_t kRays = 4000;
+  double squares = 0;
+  int counted = 0;
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    SCOPED_TRACE(testing::Message() << "seed " << seed);
+    Random random(seed);
+    InfluenceArea area = random_area(random, false);
+    auto& point = std::get<PointArea>(area.shape);
+    point.fov_x = std::max(point.fov_x, 70.0f), point.fov_y = std::max(point.fov_y, 70.0f);
+    const AreaGeometry geometry(area);
+    const RayMeasure solid = solid_angle_measure(area), whole = solid_angle_measure(area, Culling::kNone),
+                     sampled = sampled_measure(test::isotropic_rays(area, kRays, seed));
+    for (int i = 0; i < 10; ++i) {
+      const Bounds box = random_box(geometry, random);
+      const double p = static_cast<double>(solid(box)) / static_cast<double>(solid.total(box));
+      EXPECT_LE(p, 1);
+      EXPECT_GE(whole(box), solid(box) * 0.999999f);
+      const double variance = kRays * p * (1 - p);
+      if (variance < 20) continue;
+      const double z = (static_cast<double>(sampled(box)) - kRays * p) / std::sqrt(variance);
+      EXPECT_LE(std::fabs(z), 5) << p;
+      squares += z * z;
+      ++counted;
+    }
+  }
+  EXPECT_GT(counted, 150);
+  EXPECT_NEAR(squares / counted, 1, 0.3);
 }
 
 // Rays of every kind: parallel to axes, starting inside boxes and on their faces, bounded, reversed, invalid.

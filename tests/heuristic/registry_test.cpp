@@ -71,11 +71,11 @@ struct BadRecipe {
 };
 
 const BadRecipe kBadRecipes[] = {
-    {"", "recipe", "Known: SAH, PAH, PAH-UNCULLED, DIR, SAMPLED, VISIBLE"},
+    {"", "recipe", "Known: SAH, PAH, PAH-UNCULLED, DIR, SOLID, SAMPLED, VISIBLE"},
     {"PAH", "recipe", "Did you mean PAH?"},
     {"PAH@paper", "recipe", "write MEASURE+ORIENTATION"},
     {"+", "measure", "Known: SAH"},
-    {"PHA+SPFH", "measure", "Did you mean PAH? Known: SAH, PAH, PAH-UNCULLED, DIR, SAMPLED, VISIBLE"},
+    {"PHA+SPFH", "measure", "Did you mean PAH? Known: SAH, PAH, PAH-UNCULLED, DIR, SOLID, SAMPLED, VISIBLE"},
     {"sampeld+ALL", "measure", "Did you mean SAMPLED?"},
     {"PAH+SPHF", "orientation", "Did you mean SPFH? Known: LSPH, SPFH, ALL, ROBIN"},
     {"PAH+", "orientation", "Known: LSPH"},
