@@ -67,7 +67,7 @@ double bytes_of_tree(const TriangleMesh& mesh, const InfluenceArea* area, const 
 double bytes_of_accelerator(const TriangleMesh& mesh, std::span<const InfluenceArea> areas,
                             const AcceleratorOptions& options) {
   const std::string builder = options.quality ? builder_name(*options.quality) : options.global.builder;
-  const double area = options.space == LocalSpace::kRay ? kArea + kInRaySpace : kArea;
+  const double area = local_space(options) == LocalSpace::kRay ? kArea + kInRaySpace : kArea;
   const double copy = static_cast<double>(mesh.vertices.size() * sizeof(Vec3) + mesh.triangles.size() * 12);
   return copy + count_of(mesh) * bytes_per_triangle(builder) + members_of(mesh, areas) * area;
 }

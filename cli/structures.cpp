@@ -51,8 +51,10 @@ void check_structures(const StructureOptions& options, const AcceleratorOptions&
 
 void add_structure_options(Arguments& arguments, StructureOptions& options, Routing usual) {
   arguments.group("Structures");
-  arguments.text("--space", "NAME", options.space,
-                 "Space of the areas' trees: world, ray (both), or none for coverage alone [world]");
+  arguments.text(
+      "--space", "NAME", options.space,
+      "Space of the areas' trees: world, ray (both), or none for coverage alone [none where rays go to whoever "
+      "costs least, else world]");
   arguments.text("--frame", "NAME", options.frame,
                  "Frame of trees in ray space, where it suits: rotation, shear_x, shear_y, shear_z or projective "
                  "[the cheapest]");
@@ -66,7 +68,7 @@ void add_structure_options(Arguments& arguments, StructureOptions& options, Rout
 }
 
 std::string given_structure_option(const StructureOptions& options) {
-  if (options.space != StructureOptions{}.space) return "--space";
+  if (!options.space.empty()) return "--space";
   if (options.density != StructureOptions{}.density) return "--density";
   if (!options.frame.empty()) return "--frame";
   if (!options.routing.empty()) return "--routing";
@@ -74,7 +76,7 @@ std::string given_structure_option(const StructureOptions& options) {
 }
 
 void set_structures(const StructureOptions& options, AcceleratorOptions& result) {
-  result.space = parse_space(options.space);
+  if (!options.space.empty()) result.space = parse_space(options.space);
   result.density = parse_density(options.density);
   if (!options.frame.empty()) result.frame = parse_frame(options.frame);
   if (!options.routing.empty()) result.routing = parse_routing(options.routing);

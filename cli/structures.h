@@ -10,7 +10,7 @@
 namespace raygrain::cli {
 
 struct StructureOptions {
-  std::string space = "world", density = "near-plane", frame, routing;  // no routing: the command's own
+  std::string density = "near-plane", space, frame, routing;  // no space: local_space; no routing: the command's own
   bool no_coverage = false;
 };
 /// Under a title of their own. `usual` is what the command does without --routing.

@@ -58,9 +58,9 @@ struct AcceleratorOptions {
   /// and in which order any hit asks them. Empty: the local recipe's.
   std::string wide_measure = {};
   Traversal traversal = Traversal::kWide;
-  LocalSpace space = LocalSpace::kWorld;
-  Routing routing = Routing::kCheapest;         // under Traversal::kBinary always kAreas
-  RayDensity density = RayDensity::kNearPlane;  // of point areas' rays, for their trees under LocalSpace::kRay
+  std::optional<LocalSpace> space = std::nullopt;  // nothing: see local_space
+  Routing routing = Routing::kCheapest;            // under Traversal::kBinary always kAreas
+  RayDensity density = RayDensity::kNearPlane;     // of point areas' rays, for their trees under LocalSpace::kRay
   std::optional<FrameKind> frame;  // of areas that it suits; the others, and without one: the cheapest by prediction
   std::optional<Isa> isa;          // of wide trees; default_isa() without one
   /// Of each area, over all triangles that its rays can meet: answers batches of rays that share its direction or its
@@ -75,6 +75,12 @@ struct AcceleratorOptions {
   /// false cancels: Error kCancelled.
   std::function<bool(double done)> progress;
 };
+
+/// The space of areas' trees that an accelerator with these options builds: the given one. Without one kNone where
+/// coverage and the global tree answer, since a tree in the world hardly ever costs less than both
+/// (docs/performance-rays.md, "Which structure pays"); kWorld where such trees are asked for: without coverage, under
+/// Traversal::kBinary or Routing::kAreas, or where `local`, `reinsert_local`, `wide_measure` or `membership` is set.
+LocalSpace local_space(const AcceleratorOptions& options);
 
 /// One area with its tree; `predicted_cost` is the estimated cost per ray under the tree's own measure.
 struct LocalTree {

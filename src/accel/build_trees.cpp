@@ -121,11 +121,21 @@ struct AreaBuilds {
 
 }  // namespace
 
+LocalSpace local_space(const AcceleratorOptions& options) {
+  if (options.space) return *options.space;
+  const std::string usual = recipe_name(AcceleratorOptions{}.local);
+  const bool answers = options.traversal == Traversal::kBinary || options.routing == Routing::kAreas;
+  const bool is_chosen = recipe_name(options.local) != usual || options.reinsert_local ||
+                         !options.wide_measure.empty() || options.membership;
+  return answers || is_chosen || !options.coverage ? LocalSpace::kWorld : LocalSpace::kNone;
+}
+
 /// One task per tree, the global one first because it is the longest; and because it ends the samples of local trees
 /// that ask where rays hit.
 BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> areas,
                        const AcceleratorOptions& options) {
-  const size_t locals = options.space == LocalSpace::kNone ? 0 : areas.size();
+  const LocalSpace space = local_space(options);
+  const size_t locals = space == LocalSpace::kNone ? 0 : areas.size();
   JointProgress progress(options.progress, locals + 1);
   BuiltTrees trees;
   trees.locals.resize(locals);
@@ -133,7 +143,7 @@ BuiltTrees build_trees(const TriangleMesh& mesh, std::span<const InfluenceArea> 
   AreaBuilds own{mesh, options, LocalRecipes(options), nullptr, nullptr};
   const bool ends_samples = locals > 0 && own.recipes.need_hits(options.registry);
   const Timer timer;
-  if (options.space == LocalSpace::kRay && options.traversal == Traversal::kWide)
+  if (space == LocalSpace::kRay && options.traversal == Traversal::kWide)
     own.corners = std::make_shared<const TriangleCorners>(mesh);
   const double corners_seconds = timer.seconds();
   const auto build = [&](size_t task) {

@@ -82,6 +82,7 @@ TEST(Accelerator, PredictedCostIsPricedUnderTheTreesOwnMeasure) {
 TEST(Accelerator, ThreadsDoNotChangeTheTrees) {
   const TriangleMesh mesh = random_mesh(500, 4);
   AcceleratorOptions options;
+  options.space = LocalSpace::kWorld;
   options.threads = 1;
   const Accelerator one(mesh, some_areas(), options);
   for (const unsigned threads : {2u, 4u, 0u}) {
