@@ -107,9 +107,11 @@ class AreaGeometry {
   double projected_area(const Bounds& box, Culling culling) const;
 
   /// The part of the unit sphere about a point area's eye, in steradians, that `projected_hull` covers: how many rays
-  /// of an isotropic light meet the box. Beside the rounding of the hull's points the relative error is below
-  /// 2e-15 (1 + r^2) times the hull's length over its width, r being its farthest point's distance from the
-  /// projection's middle. Throws Error (kUsage) for a plane area, whose rays have no eye.
+  /// of an isotropic light meet the box. kNone: of the part with |x|, |y| <= 65536, or as far as the window if that
+  /// reaches farther; the flatter rays outside, 9e-5 steradians of the half sphere's 2 pi, are left out. Beside the
+  /// rounding of the hull's points the relative error is below 2e-15 (1 + r^2) times the part's length over its width,
+  /// r being its farthest point's distance from the projection's middle. Throws Error (kUsage) for a plane area, whose
+  /// rays have no eye.
   double solid_angle(const Bounds& box, Culling culling) const;
 
   /// Of the whole window; relative error below 1e-14. Throws likewise.

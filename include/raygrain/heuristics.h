@@ -23,7 +23,8 @@ RayMeasure projected_area_measure(const InfluenceArea& area, Culling culling = C
 
 /// The solid angle under which a point area's eye sees a box: rays of an isotropic light, which the projected area
 /// overrates up to 5.2 times towards the corners of a window of 90 degrees. kWindow: culled to the window, total = the
-/// window's solid angle; kNone: total = the root's. For a plane area projected_area_measure: so it looks from far away.
+/// window's solid angle; kNone: total = the root's, without the flattest rays (AreaGeometry::solid_angle). For a plane
+/// area projected_area_measure: so it looks from far away.
 RayMeasure solid_angle_measure(const InfluenceArea& area, Culling culling = Culling::kWindow);
 
 /// Counts the sample rays that meet a box (as infinite lines cut to [tmin, tmax]); total = their number.

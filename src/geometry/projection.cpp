@@ -115,6 +115,10 @@ double face_area_sum(Vec3d weights, Vec3d size) {
          std::fabs(weights.z) * size.x * size.y;
 }
 
+// How far from the middle an outline's solid angle is measured if no window bounds it: farther out digits are lost, and
+// all that lies there is 9e-5 of a steradian.
+constexpr double kFarthestSight = 0x1p16;
+
 constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 // How outlines are measured: by their area, or by their solid angle at the eye.
@@ -194,7 +198,11 @@ double AreaGeometry::projected_area(const Bounds& box, Culling culling) const {
 
 double AreaGeometry::solid_angle(const Bounds& box, Culling culling) const {
   if (is_plane()) throw Error(ErrorCode::kUsage, area_.name, "is a plane area: its rays have no eye");
-  return is_empty(box) ? 0 : point_size<BySolidAngle>(frame_, near_z_, window_half_, box, culling);
+  if (is_empty(box)) return 0;
+  const bool is_culled = culling == Culling::kWindow;
+  const Vec2d half{is_culled ? window_half_.x : std::max(window_half_.x, kFarthestSight),
+                   is_culled ? window_half_.y : std::max(window_half_.y, kFarthestSight)};
+  return point_size<BySolidAngle>(frame_, near_z_, half, box, Culling::kWindow);
 }
 
 double AreaGeometry::window_solid_angle() const {

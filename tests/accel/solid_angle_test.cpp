@@ -195,6 +195,8 @@ TEST(SolidAngleTrees, AnswerAlikeAndWhatTheyAreWorth) {
       for (const Question& question : questions(from, to)) {
         const double ratio = cost_of(question, solid) / cost_of(question, plane);
         EXPECT_NE(ratio, 1);
+        EXPECT_GT(ratio, 0.7);
+        EXPECT_LT(ratio, 1.4);
         std::cout << "; " << question.name << ": cost " << ratio;
         if (is_full_scale()) std::cout << ", time " << time_ratio(question, solid, plane);
       }

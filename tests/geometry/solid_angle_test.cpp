@@ -84,6 +84,53 @@ TEST(SolidAngle, OfNearlyHalfOfTheSphere) {
     EXPECT_NEAR(angle_of({-reach, -reach}, {reach, reach}), rectangle_solid_angle({reach, reach}), 1e-14 * reach);
 }
 
+/// Along the axes, from the origin.
+AreaGeometry lamp(float near_z, float degrees = 90) {
+  return AreaGeometry({"lamp", PointArea{{}, {0, 0, 1}, {0, 1, 0}, degrees, degrees, near_z, 1e30f}});
+}
+
+double unculled(const AreaGeometry& area, Vec3 half) {
+  return area.solid_angle({-half, half}, Culling::kNone);
+}
+
+// Outlines of boxes about the eye are half / near_z large: 1e38 and more. Only the flattest rays are left out.
+TEST(SolidAngle, OfWhatReachesFar) {
+  for (const float near_z : {1e-6f, 1e-3f, 0.1f, 10.0f}) {
+    double last = 0;
+    for (float half = near_z; half < 2e38f; half *= 7) {
+      const double reach = static_cast<double>(half) / static_cast<double>(near_z);
+      const double angle = unculled(lamp(near_z), {half, half, half});
+      ASSERT_NEAR(angle, rectangle_solid_angle({reach, reach}), 9e-5) << near_z << ' ' << half;
+      ASSERT_GE(angle, last * (1 - 1e-9)) << near_z << ' ' << half;
+      last = angle;
+    }
+  }
+  EXPECT_NEAR(unculled(lamp(0.01f), {1e6f, 1e-4f, 1}), rectangle_solid_angle({1e8, 0.01}), 0.04 * 2e-5);
+  EXPECT_NEAR(unculled(lamp(1), {1e9f, 1e-3f, 1}), 0.004, 0.004 * 2e-5);
+  EXPECT_EQ(unculled(lamp(1), {1e5f, 1e5f, 1}), unculled(lamp(1), {1e20f, 1e30f, 1e38f}));
+  const Bounds flat{{7e4f, 0, 0.5f}, {8e4f, 1, 1}};  // seen, but farther out than what counts
+  EXPECT_EQ(lamp(0.1f).solid_angle(flat, Culling::kNone), 0);
+}
+
+// A window that reaches farther bounds the outline instead.
+TEST(SolidAngle, WithoutCullingIsNeverLess) {
+  Random random(4);
+  const float widest = std::nextafter(180.0f, 0.0f);
+  for (const AreaGeometry& area : {lamp(0.1f), lamp(0.1f, 179.99f), lamp(1e-3f, widest)}) {
+    ASSERT_EQ(unculled(area, {1e30f, 1e30f, 1e30f}) > area.window_solid_angle(), area.window_half().x < 0x1p16);
+    for (int i = 0; i < 2000; ++i) {
+      Bounds box;
+      for (int k = 0; k < 2; ++k) {
+        Vec3 p;
+        for (int axis = 0; axis < 3; ++axis)
+          p[axis] = static_cast<float>(random.uniform(-1, 1) * std::pow(10.0, random.uniform(-2, 1.5)));
+        box.extend(p);
+      }
+      ASSERT_GE(area.solid_angle(box, Culling::kNone), area.solid_angle(box, Culling::kWindow) * (1 - 1e-9));
+    }
+  }
+}
+
 TEST(SolidAngle, ParallelRaysHaveNoEye) {
   const AreaGeometry sun({"sun", PlaneArea{}});
   EXPECT_THROW((void)sun.solid_angle({{0, 0, 0}, {1, 1, 1}}, Culling::kNone), Error);

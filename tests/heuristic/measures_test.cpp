@@ -99,16 +99,19 @@ TEST(Measures, ManyBoxesAtOnceAreTheSameAsOneByOne) {
   }
 }
 
+constexpr float kSphere = 4 * 3.14159265f;
+
 TEST(Measures, HugeBoxesAreFinite) {
   const Bounds huge{{-1e38f, -1e38f, -1e38f}, {1e38f, 1e38f, 1e38f}};
   EXPECT_TRUE(std::isfinite(projected_area_measure({"z", PlaneArea{}}, Culling::kNone)(huge)));
   EXPECT_TRUE(std::isfinite(projected_area_measure({"z", PointArea{}}, Culling::kNone)(huge)));
   EXPECT_EQ(projected_area_measure({"z", PlaneArea{}})(huge), 4);
   EXPECT_EQ(solid_angle_measure({"z", PointArea{}})(huge), solid_angle_measure({"z", PointArea{}}).total(huge));
-  EXPECT_LE(solid_angle_measure({"z", PointArea{}}, Culling::kNone)(huge), 6.2831855f);
+  const RayMeasure solid = solid_angle_measure({"z", PointArea{}}, Culling::kNone);
+  EXPECT_NEAR(solid(huge), kSphere / 2, 1e-4f);
+  EXPECT_LE(solid(huge), kSphere / 2);
+  EXPECT_GE(solid(huge), solid({{-1, -1, -1}, {1, 1, 1}}));
 }
-
-constexpr float kSphere = 4 * 3.14159265f;
 
 TEST(SolidAngleMeasure, CubeFacesShareTheSphere) {
   const Bounds cube{{-1, -2, -3}, {3, 2, 1}};
