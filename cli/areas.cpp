@@ -86,13 +86,16 @@ std::vector<InfluenceArea> choose_areas(const AreaOptions& options, const Scene&
   return areas;
 }
 
-void fail_without_areas(const AreaOptions& options, const Scene& scene, const std::string& name) {
+void refuse_empty_areas(const AreaOptions& options, const Scene& scene, const std::string& name) {
   const bool given = !options.file.empty() || options.sun || options.light || options.camera;
   if (given || !scene.areas.empty())
     throw Error(ErrorCode::kBadArea, options.file.empty() ? name : options.file,
                 "no triangle lies in the influence areas", "Move or enlarge the areas: see raygrain scene info");
-  fail_usage(name, "has no influence areas of its own",
-             "Add --sun X,Y,Z (direction of the light), --light X,Y,Z, --camera EYE TARGET or --areas FILE.json");
+}
+
+void fail_without_areas(const AreaOptions& options, const Scene& scene, const std::string& name) {
+  refuse_empty_areas(options, scene, name);
+  fail_usage(name, "has no influence areas of its own", kAreasHint);
 }
 
 }  // namespace raygrain::cli

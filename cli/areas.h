@@ -28,8 +28,15 @@ void check_area_options(const AreaOptions& options);
 /// Throws Error.
 std::vector<InfluenceArea> choose_areas(const AreaOptions& options, const Scene& scene, const Output& output);
 
-/// For when choose_areas left none: throws Error (kUsage) that shows the options, or Error (kBadArea) where all areas
-/// are empty. `name` is the scene's on the command line.
+/// Options that give areas, as a hint.
+inline constexpr const char* kAreasHint =
+    "Add --sun X,Y,Z (direction of the light), --light X,Y,Z, --camera EYE TARGET or --areas FILE.json";
+
+/// For when choose_areas left none: throws Error (kBadArea) where there were some, all empty. `name` is the scene's on
+/// the command line.
+void refuse_empty_areas(const AreaOptions& options, const Scene& scene, const std::string& name);
+
+/// ... or else Error (kUsage) that shows the options.
 [[noreturn]] void fail_without_areas(const AreaOptions& options, const Scene& scene, const std::string& name);
 
 }  // namespace raygrain::cli

@@ -153,6 +153,7 @@ int explain(const Options& options) {
   const Scene scene = open_scene(options.scene, progress);
   const std::vector<InfluenceArea> areas = choose_areas(options.areas, scene, output);
   if (areas.empty()) fail_without_areas(options.areas, scene, options.scene);
+  check_structures_of(options.structures, areas);
   const std::vector<Ray> rays = given_rays(options.rays, scene);
   build.progress = [&](double done) {
     progress.show("build the structures", 0.8 * done);

@@ -96,11 +96,13 @@ void check_options(const Options& options) {
   if (!options.rays.is_given()) fail_usage("--rays", "no rays are given", kRaysHint);
 }
 
-void require_areas(const Options& options, const std::vector<InfluenceArea>& areas) {
+void require_areas(const Options& options, const Scene& scene, const std::vector<InfluenceArea>& areas) {
   const std::string local = given_local_option(options), structure = given_structure_option(options.structures);
-  if (areas.empty() && !(local + structure).empty())
-    fail_usage(local.empty() ? structure : local, "is about influence areas, and there are none",
-               "Add --sun X,Y,Z (direction of the light), --light X,Y,Z, --camera EYE TARGET or --areas FILE.json");
+  if (areas.empty() && !(local + structure).empty()) {
+    refuse_empty_areas(options.areas, scene, options.scene);
+    fail_usage(local.empty() ? structure : local, "is about influence areas, and there are none", kAreasHint);
+  }
+  check_structures_of(options.structures, areas);
 }
 
 /// With the global tree of a file, where one is given.
@@ -159,7 +161,7 @@ int trace(const Options& options) {
   Progress progress(!options.common.quiet);
   const Scene scene = open_scene(options.scene, progress);
   const std::vector<InfluenceArea> areas = choose_areas(options.areas, scene, output);
-  require_areas(options, areas);
+  require_areas(options, scene, areas);
   const std::vector<Ray> rays = given_rays(options.rays, scene);
 
   const Traced traced = trace_and_verify(options, scene, areas, rays, progress);

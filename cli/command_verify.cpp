@@ -1,6 +1,7 @@
 // raygrain verify: random scenes and hard rays through every kind of structure, against brute force.
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -25,6 +26,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr uint64_t kUsualRays = 10'000'000;
 constexpr float kMostMinutes = 1e6f;
+constexpr const char* kUsualFolder = "verify-failures";
 
 struct Options {
   CommonOptions common;
@@ -32,7 +34,7 @@ struct Options {
   std::optional<uint64_t> rays;
   std::optional<float> minutes;
   uint64_t seed = 1;
-  std::string folder = "verify-failures";
+  std::string folder;  // empty: the usual one, made for a failure only
 };
 
 VerifyOptions verify_options(const Options& options, Progress& progress) {
@@ -41,7 +43,7 @@ VerifyOptions verify_options(const Options& options, Progress& progress) {
   if (options.minutes) result.seconds = 60 * static_cast<double>(*options.minutes);
   result.seed = options.seed;
   result.threads = options.common.thread_count();
-  result.folder = options.folder;
+  result.folder = options.folder.empty() ? kUsualFolder : options.folder;
   for (const std::string& scene : options.scenes) result.scenes.push_back(open_scene(scene, progress));
   result.stop = was_interrupted;
   result.progress = [&progress, rays = static_cast<double>(result.rays),
@@ -86,13 +88,23 @@ std::string verify_json(const Options& options, const VerifyResult& result) {
   return report.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+VerifyResult verify_into(const std::string& given_folder, const VerifyOptions& how) {
+  try {
+    std::optional<OutputFolder> folder;
+    if (!given_folder.empty()) folder.emplace(given_folder);  // before hours of work, not after them
+    finish_on_interrupt();
+    return verify(how);
+  } catch (const Error& error) {
+    if (error.code != ErrorCode::kUnwritable) throw;
+    throw Error(error.code, error.where, error.message, "Name another folder for failures: --out DIR");
+  }
+}
+
 int verify_answers(const Options& options) {
   const Output output(options.common);
   Progress progress(!options.common.quiet);
   const VerifyOptions how = verify_options(options, progress);
-  const OutputFolder folder(options.folder);  // before hours of work, not after them
-  finish_on_interrupt();
-  const VerifyResult result = verify(how);
+  const VerifyResult result = verify_into(options.folder, how);
   progress.erase();
   output.save_json(verify_json(options, result));
   for (const VerifyFailure& failure : result.failures)

@@ -1,5 +1,8 @@
 #include "cli/structures.h"
 
+#include <algorithm>
+#include <variant>
+
 #include "cli/values.h"
 
 namespace raygrain::cli {
@@ -34,12 +37,19 @@ Routing parse_routing(const std::string& text) {
 
 /// What cannot be had together would be ignored.
 void check_structures(const StructureOptions& options, const AcceleratorOptions& result) {
-  const bool in_ray_space = result.space == LocalSpace::kRay, binary = result.traversal == Traversal::kBinary;
+  const LocalSpace space = local_space(result);
+  const bool in_ray_space = space == LocalSpace::kRay, binary = result.traversal == Traversal::kBinary;
   if (result.frame && !in_ray_space)
     fail_usage("--frame", "is for trees in ray space, and there are none", "Add --space ray");
   if (result.density != RayDensity::kNearPlane && !in_ray_space)
     fail_usage("--density", "is for trees in ray space, and there are none", "Add --space ray");
-  if (options.no_coverage && result.space == LocalSpace::kNone)
+  if (binary && space == LocalSpace::kNone)
+    fail_usage("--space", "none leaves areas nothing under --traversal binary, which has no coverage",
+               "Leave one of them out");
+  if (binary && options.no_coverage)
+    fail_usage("--no-coverage", "changes nothing under --traversal binary, which has no coverage",
+               "Leave one of them out");
+  if (options.no_coverage && space == LocalSpace::kNone)
     fail_usage("--no-coverage", "leaves areas nothing under --space none", "Leave one of them out");
   if (binary && in_ray_space)
     fail_usage("--space", "ray needs wide trees, and --traversal binary has none", "Leave one of them out");
@@ -82,6 +92,14 @@ void set_structures(const StructureOptions& options, AcceleratorOptions& result)
   if (!options.routing.empty()) result.routing = parse_routing(options.routing);
   if (options.no_coverage) result.coverage.reset();
   check_structures(options, result);
+}
+
+void check_structures_of(const StructureOptions& options, std::span<const InfluenceArea> areas) {
+  const bool has_points = std::ranges::any_of(
+      areas, [](const InfluenceArea& area) { return std::holds_alternative<PointArea>(area.shape); });
+  if (parse_density(options.density) != RayDensity::kNearPlane && !has_points)
+    fail_usage("--density", "is about rays through a point, and no area has one",
+               "Leave it out, or give --light X,Y,Z or --camera EYE TARGET");
 }
 
 }  // namespace raygrain::cli

@@ -1,6 +1,7 @@
 // What areas are given to answer their rays, as commands that make an accelerator are told.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "raygrain/accelerator.h"
@@ -21,5 +22,8 @@ std::string given_structure_option(const StructureOptions& options);
 
 /// Sets what is given in `result`, whose traversal is set. Throws Error (kUsage). Needs no scene, so it can come first.
 void set_structures(const StructureOptions& options, AcceleratorOptions& result);
+
+/// Throws Error (kUsage) for what would change nothing about these areas.
+void check_structures_of(const StructureOptions& options, std::span<const InfluenceArea> areas);
 
 }  // namespace raygrain::cli

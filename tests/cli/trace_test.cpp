@@ -1,4 +1,6 @@
 // raygrain trace with the structures that a user asks for, and its verdict about the answers.
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -122,12 +124,23 @@ TEST(TraceOptions, ThatWouldBeIgnoredAreRefused) {
   refused({"--routing", "best"}, "Known: cheapest, areas");
   refused({"--space", "none", "--reinsert-local"}, "--space none builds none");
   refused({"--space", "none", "--no-coverage"}, "--no-coverage: leaves areas nothing");
+  refused({"--space", "none", "--traversal", "binary"}, "--space: none leaves areas nothing under --traversal binary");
+  refused({"--no-coverage", "--traversal", "binary"}, "--no-coverage: changes nothing under --traversal binary");
   refused({"--space", "ray", "--traversal", "binary"}, "--space: ray needs wide trees");
+  refused({"--space", "ray", "--density", "solid-angle", "--sun", "0,0,1"}, "--density: is about rays through a point");
   refused({"--routing", "cheapest", "--traversal", "binary"}, "--routing: cheapest needs wide trees");
   refused({"--tree", "SCENE", "--routing", "areas"}, "--tree: cannot be combined with --routing");
   refused({"--quality", "foo"}, "--quality: unknown quality \"foo\"");
   refused({"--wide-measure", "nope"}, "--wide-measure: unknown name \"nope\"");
   refused({"--global", "SAH+ALL@papers"}, "--global: unknown name \"papers\"");
+}
+
+TEST(TraceOptions, AboutEmptyAreasSaySo) {
+  check({"areas elsewhere",
+         {"trace", "SCENE", "--camera", "1000,1000,1000", "2000,2000,2000", "--rays", "RAYS", "-o", "OUT", "--space",
+          "ray"},
+         1,
+         "no triangle lies in the influence areas. Move"});
 }
 
 TEST(TraceOptions, TreesInRaySpaceNeedMemory) {

@@ -29,6 +29,16 @@ TEST(VerifyCommand, SaysWhatItAsked) {
   EXPECT_TRUE(names_in(folder.path()).empty());  // no folder without failures
 }
 
+TEST(VerifyCommand, NeedsAFolderThatItWasGivenAndForFailures) {
+  RunOptions nowhere;
+  nowhere.folder = "/proc";  // where no folder can be made
+  EXPECT_EQ(run_program({"verify", "--rays", "10"}, nowhere).exit_code, 0);
+  const RunResult given = run_program({"verify", "--rays", "10", "--out", "failures"}, nowhere);
+  EXPECT_EQ(given.exit_code, 1);
+  EXPECT_NE(given.errors.find("failures: cannot create the folder"), std::string::npos) << given.errors;
+  EXPECT_NE(given.errors.find("--out DIR"), std::string::npos) << given.errors;
+}
+
 TEST(VerifyCommand, IsTheSameForASeedOnAnyNumberOfThreads) {
   nlohmann::json one = json_of({"--threads", "1"}), two = json_of({"--threads", "2"});
   EXPECT_GE(one["rays"].get<uint64_t>(), 30000u);
