@@ -1,5 +1,6 @@
 #include "verify/aspects.h"
 
+#include <algorithm>
 #include <set>
 
 #include "raygrain/error.h"
@@ -46,13 +47,23 @@ void add_tree(const StructureSpec& spec, const VerifyScene& scene, Aspects& aspe
   add_wide_measure(spec, tree_recipe(wide, scene).measure, aspects);
 }
 
-void add_local_trees(const StructureSpec& spec, Aspects& aspects) {
+void add_solid_angle(const StructureSpec& spec, Aspects& aspects) {
+  aspects.insert({"density solid-angle", spec.kind + ", density solid-angle"});
+}
+
+bool is_point(const InfluenceArea& area) {
+  return std::holds_alternative<PointArea>(area.shape);
+}
+
+void add_local_trees(const StructureSpec& spec, const VerifyScene& scene, Aspects& aspects) {
   const Recipe recipe = parse_recipe(spec.local, verify_registry(spec.seed));
   add_recipe(spec, recipe, aspects);
   aspects.insert(spec.ray_space ? "local trees in ray space" : "local trees");
   if (spec.reinserted_local) aspects.insert({"local trees, reinserted", "reinserted by " + recipe.measure});
   if (!spec.wide_measure.empty()) add_wide_measure(spec, spec.wide_measure, aspects);
   if (!spec.area_frame.empty()) aspects.insert("local trees in ray space, frame " + spec.area_frame);
+  const bool has_points = std::ranges::any_of(accelerator_areas(spec, scene), is_point);
+  if (spec.ray_space && spec.solid_angle && has_points) add_solid_angle(spec, aspects);
 }
 
 void add_accelerator(const StructureSpec& spec, const VerifyScene& scene, Aspects& aspects) {
@@ -64,7 +75,7 @@ void add_accelerator(const StructureSpec& spec, const VerifyScene& scene, Aspect
   add_recipe(spec, global, aspects);
   if (spec.reinserted) aspects.insert("reinserted by " + global.measure);
   if (accelerator_areas(spec, scene).empty()) return;
-  if (spec.local_trees) add_local_trees(spec, aspects);
+  if (spec.local_trees) add_local_trees(spec, scene, aspects);
   if (!spec.local_trees) aspects.insert("accelerators without local trees");
   if (spec.traversal == "wide" && spec.covered) aspects.insert("accelerators with coverage");
 }
@@ -77,6 +88,8 @@ Aspects aspects_of(const StructureSpec& spec, const VerifyScene& scene) {
   const bool has_kernels = spec.kind != "binary" && spec.traversal == "wide";
   if (has_kernels) aspects.insert({"isa " + spec.isa, spec.kind + ", isa " + spec.isa});
   if (spec.kind == "frame") aspects.insert("frame " + spec.frame);
+  if (spec.kind == "frame" && spec.solid_angle && spec.frame == name(FrameKind::kProjective))
+    add_solid_angle(spec, aspects);
   if (spec.threads != 1) aspects.insert("several threads");
   if (spec.reinserted || spec.reinserted_local) aspects.insert("reinserted");
   if (spec.refitted) aspects.insert("refitted");

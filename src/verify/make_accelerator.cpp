@@ -29,7 +29,7 @@ AcceleratorOptions accelerator_options(const StructureSpec& spec) {
   options.traversal = spec.traversal == "binary" ? Traversal::kBinary : Traversal::kWide;
   options.space = !spec.local_trees ? LocalSpace::kNone : spec.ray_space ? LocalSpace::kRay : LocalSpace::kWorld;
   if (!spec.area_frame.empty()) options.frame = parse_frame(spec.area_frame);
-  if (spec.seed % 3 == 0) options.density = RayDensity::kSolidAngle;
+  if (spec.solid_angle) options.density = RayDensity::kSolidAngle;
   options.isa = parse_isa(spec.isa);
   if (spec.seed % 2 == 0) options.routing = Routing::kAreas;  // else as sample rays say: often the global tree
   options.coverage = std::nullopt;

@@ -39,7 +39,7 @@ std::optional<FrameUnderTest> make_frame_tree(const StructureSpec& spec, const V
       *frame, std::make_shared<const TriangleCorners>(*scene.mesh), ids,
       {.weights = spec.of_area ? frame_area_weights(*frame, geometry) : Vec3d{0, 0, 1},
        .z_term = spec.seed % 3 == 0 ? 0.0f : 0.1f,
-       .density = frame->is_projective() && spec.seed % 2 != 0 ? RayDensity::kSolidAngle : RayDensity::kNearPlane,
+       .density = frame->is_projective() && spec.solid_angle ? RayDensity::kSolidAngle : RayDensity::kNearPlane,
        .spatial = spec.spatial,
        .threads = 1,
        .isa = parse_isa(spec.isa)});

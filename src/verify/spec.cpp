@@ -32,7 +32,7 @@ void visit_fields(Spec& s, const Visit& visit) {
   visit("batch", s.batch), visit("threads", s.threads), visit("counted", s.counted), visit("unpruned", s.unpruned);
   visit("seed", s.seed), visit("by_own_measure", s.by_own_measure), visit("local_trees", s.local_trees);
   visit("reinserted_local", s.reinserted_local), visit("wide_measure", s.wide_measure);
-  visit("area_frame", s.area_frame), visit("quality", s.quality);
+  visit("area_frame", s.area_frame), visit("quality", s.quality), visit("solid_angle", s.solid_angle);
 }
 
 std::string text_of(const std::string& value) {
@@ -142,19 +142,43 @@ void draw_local_trees(StructureSpec& spec, Random& random, const Registry& regis
   if (spec.ray_space && one_in(random, 2)) spec.area_frame = random_frame(random);
 }
 
+/// Now and then in place of a recipe's measure.
+void draw_solid(std::string& recipe, Random& random) {
+  if (one_in(random, 7)) recipe = "SOLID" + recipe.substr(recipe.find('+'));
+}
+
+void draw_solid_angles(StructureSpec& spec, Random& random) {
+  const bool is_tree = spec.kind == "binary" || spec.kind == "wide", has_local = spec.areas && spec.local_trees;
+  if (is_tree) draw_solid(spec.tree, random);
+  if (spec.kind == "accelerator" && has_local) draw_solid(spec.local, random);
+  if (!spec.wide_measure.empty() && one_in(random, 14)) spec.wide_measure = "SOLID";
+  const bool is_projective = spec.kind == "frame" && spec.frame == name(FrameKind::kProjective);
+  if (is_projective || (spec.kind == "accelerator" && has_local && spec.ray_space))
+    spec.solid_angle = one_in(random, 2);
+}
+
 /// After all others: whatever is drawn before stays what it is for a seed.
 void draw_uses(StructureSpec& spec, Random& random, const Registry& registry) {
   if (spec.kind == "binary" || spec.kind == "wide") spec.by_own_measure = spec.reinserted && !one_in(random, 4);
   if (spec.kind == "wide" && one_in(random, 3)) spec.wide_measure = random_wide_measure(random, registry);
-  if (spec.kind != "accelerator") return;
-  if (one_in(random, 4)) spec.quality = any_of(random, std::array{"fast", "balanced", "best"});
-  if (spec.areas) draw_local_trees(spec, random, registry);
+  if (spec.kind == "accelerator") {
+    if (one_in(random, 4)) spec.quality = any_of(random, std::array{"fast", "balanced", "best"});
+    if (spec.areas) draw_local_trees(spec, random, registry);
+  }
+  draw_solid_angles(spec, random);
+}
+
+/// A seed draws among the measures that were there first; newer ones take their place in the end.
+Registry drawn_registry() {
+  Registry registry = verify_registry(1);
+  std::erase_if(registry.measures, [](const MeasureEntry& measure) { return measure.name == "SOLID"; });
+  return registry;
 }
 
 }  // namespace
 
 StructureSpec random_spec(Random& random) {
-  const Registry registry = verify_registry(1);
+  const Registry registry = drawn_registry();
   const std::vector<Isa> isas = supported_isas();
   StructureSpec spec;
   const uint64_t kind = random.below(20);

@@ -33,6 +33,7 @@ struct StructureSpec {
   std::string wide_measure;  // of wide forms; empty: an accelerator's as its trees', of wide trees surface area
   std::string area_frame;    // of an accelerator's areas; empty: the cheapest
   std::string quality;       // of an accelerator's global tree; empty: as its recipe says
+  bool solid_angle = false;  // trees in ray space: for isotropic light, where rays go through a point
   std::string traversal = "wide";
   float cells = 0.25f;  // of coverages
   uint32_t tile = 256;

@@ -90,10 +90,29 @@ TEST(RandomStructures, AreOfEveryKind) {
                                     "area_frame=shear_z",
                                     "area_frame=projective",
                                     "quality=fast",
-                                    "quality=best"};
+                                    "quality=best",
+                                    "solid_angle=1",
+                                    "tree=SOLID+ALL",
+                                    "local=SOLID+ALL",
+                                    "wide_measure=SOLID"};
   for (const Isa isa : supported_isas())
     if (isa != Isa::kScalar) expected.push_back(std::string("isa=") + name(isa));
   for (const std::string& word : expected) EXPECT_EQ(words.count(word), 1u) << word;
+}
+
+// As before there were newer words and measures, but for the instruction set, which the CPU decides about.
+TEST(RandomStructures, ASeedDrawsWhatItDrew) {
+  const auto without_isa = [](uint64_t seed) {
+    std::string name = random_structure(seed).name;
+    if (const size_t at = name.find(" isa="); at != std::string::npos) name.erase(at, name.find(' ', at + 1) - at);
+    return name;
+  };
+  EXPECT_EQ(without_isa(0),
+            "accelerator tree=RANDOM+LSPH@spatial local=DIR+ROBIN@binned octree=0 covered=0 cells=64 tile=4 "
+            "order=open-by-tile batch=7 seed=431527");
+  EXPECT_EQ(without_isa(5), "wide tree=RANDOM+SPFH@paper area=3 batch=16 seed=752307");
+  EXPECT_EQ(without_isa(20),
+            "wide tree=VISIBLE+LSPH@paper reinserted=1 area=4 leaf=3 batch=17 unpruned=1 seed=19397 by_own_measure=1");
 }
 
 using namespace verification;
@@ -118,6 +137,9 @@ TEST(RandomStructures, WordsReachTheAccelerator) {
   EXPECT_EQ(given.frame, FrameKind::kShearX);
   EXPECT_EQ(given.quality, Quality::kBest);
   EXPECT_EQ(given.wide_measure, "VISIBLE");
+  EXPECT_EQ(usual.density, RayDensity::kNearPlane);
+  EXPECT_EQ(accelerator_options(parse_spec("accelerator seed=3 solid_angle=1")).density, RayDensity::kSolidAngle);
+  EXPECT_EQ(accelerator_options(parse_spec("accelerator seed=3")).density, RayDensity::kNearPlane);
   EXPECT_EQ(accelerator_options(parse_spec("accelerator local_trees=0")).space, LocalSpace::kNone);
   EXPECT_EQ(accelerator_areas(parse_spec("accelerator wide_measure=DIR"), scene_with_areas()).size(), 1u);
   EXPECT_THROW(accelerator_options(parse_spec("accelerator area_frame=wood")), Error);
@@ -168,6 +190,15 @@ TEST(RandomStructures, AreCountedByWhatTheyAreForTheScene) {
   EXPECT_TRUE(counts(local + "local_trees=0", scene, "accelerators without local trees"));
   EXPECT_TRUE(counts(local + "reinserted_local=1", scene, "reinserted by VISIBLE"));
   EXPECT_TRUE(counts("accelerator tree=PAH+ALL quality=best", bare, "builder spatial"));
+  const std::string density = "accelerator, density solid-angle";
+  const std::string solid = "accelerator ray_space=1 solid_angle=1 ";
+  EXPECT_TRUE(counts(solid, scene, density));
+  EXPECT_FALSE(counts(solid, bare, density));
+  EXPECT_FALSE(counts(solid + "wide_measure=DIR", scene, density));  // plane areas alone
+  EXPECT_FALSE(counts("accelerator solid_angle=1", scene, density));
+  EXPECT_TRUE(counts("frame frame=projective of_area=1 solid_angle=1", scene, "frame, density solid-angle"));
+  EXPECT_FALSE(counts("frame frame=projective of_area=1", scene, "density solid-angle"));
+  EXPECT_FALSE(counts("frame frame=rotation solid_angle=1", scene, "density solid-angle"));
 }
 
 }  // namespace

@@ -51,10 +51,11 @@ TEST(Verify, FindsNothingWrong) {
     if (aspect.find(" rays") != std::string::npos && aspect.find(',') != std::string::npos) by_rays += count;
   }
   EXPECT_EQ(by_rays, result.tally.comparisons);
-  for (const char* aspect : {"wide, mixed rays", "coverage, rays to one point", "frame, rays of one direction",
-                             "accelerator, rays from one point", "builder spatial", "measure VISIBLE", "batches",
-                             "columns", "cones", "coverage: single", "coverage: batch", "accelerator: batch",
-                             "accelerators without local trees", "local trees, reinserted", "wide forms by VISIBLE"})
+  for (const char* aspect :
+       {"wide, mixed rays", "coverage, rays to one point", "frame, rays of one direction",
+        "accelerator, rays from one point", "builder spatial", "measure VISIBLE", "batches", "columns", "cones",
+        "coverage: single", "coverage: batch", "accelerator: batch", "accelerators without local trees",
+        "local trees, reinserted", "wide forms by VISIBLE", "density solid-angle", "measure SOLID"})
     EXPECT_EQ(result.tally.comparisons_of.count(aspect), 1u) << aspect;  // none is 0
 }
 
