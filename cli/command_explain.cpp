@@ -129,9 +129,8 @@ std::string times_table(const Explanation& explanation) {
                         percent(times.use.local));
   }
   for (const AreaReport& area : explanation.areas)
-    if (!area.times.empty() && std::ranges::none_of(area.times, [](const AreaTimes& t) { return t.question.any; }))
-      text += fmt::format("{:<{}}  no any-hit rays found: none of those tried from surfaces is its own\n", area.name,
-                          width);
+    if (const std::string_view missing = missing_times(area); !missing.empty())
+      text += fmt::format("{:<{}}  {}\n", area.name, width, missing);
   return text;
 }
 

@@ -177,6 +177,9 @@ struct Explanation {
   AcceleratorCounters counters;  // as handed in
 };
 
+/// Which of the questions could not be timed, and why, for people; empty where all were, or none was asked.
+std::string_view missing_times(const AreaReport& area);
+
 /// Lines for people: of each area first what pays, soonest first.
 std::string to_text(const Explanation& explanation);
 

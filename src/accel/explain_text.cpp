@@ -42,8 +42,8 @@ std::string text_of(const AreaReport& area, uint64_t counted) {
     return std::pair(a.break_even_rays, a.use.answered() == 0) < std::pair(b.break_even_rays, b.use.answered() == 0);
   });
   for (const AreaTimes& t : times) text += text_of(t);
-  if (!times.empty() && std::ranges::none_of(times, [](const AreaTimes& t) { return t.question.any; }))
-    text += "  no any-hit rays found: none of those tried from surfaces is its own\n";
+  if (const std::string_view missing = missing_times(area); !missing.empty())
+    text += "  " + std::string(missing) + "\n";
   text += text_line("  built in %.3f s, %.1f MB", area.build_seconds, megabytes(area.memory_bytes));
   text += area.triangles > 0 ? text_line(", %zu triangles in its tree\n", area.triangles) : "\n";
   for (size_t from = 0; from < area.routes.size();) {
@@ -61,6 +61,12 @@ std::string text_of(const AreaReport& area, uint64_t counted) {
 std::string_view name(AreaQuestion question) {
   if (question.together) return question.any ? "any hits together" : "closest hits together";
   return question.any ? "any hits one by one" : "closest hits one by one";
+}
+
+std::string_view missing_times(const AreaReport& area) {
+  const auto is_any = [](const AreaTimes& times) { return times.question.any; };
+  if (area.times.empty() || std::ranges::any_of(area.times, is_any)) return "";
+  return "no any-hit rays found: none of those tried from surfaces is its own";
 }
 
 std::string to_text(const Explanation& explanation) {

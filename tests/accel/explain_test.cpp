@@ -187,6 +187,9 @@ TEST(Explain, SaysWhereNoAnyHitsWereFound) {
     EXPECT_EQ(explanation.areas[1].routes.find("any hit: along it coverage"), 0u) << explanation.areas[1].routes;
     EXPECT_EQ(explanation.areas[0].times.size(), 2u);
     EXPECT_EQ(explanation.areas[1].times.size(), 4u);
+    EXPECT_EQ(missing_times(explanation.areas[0]).find("no any-hit rays found: "), 0u);
+    EXPECT_EQ(missing_times(explanation.areas[1]), "");
+    EXPECT_EQ(missing_times({}), "");  // not asked
     const std::string text = to_text(explanation), line = "\n  no any-hit rays found: ";
     EXPECT_LT(text.find(line), text.find("\nspot: "));
     EXPECT_EQ(text.find(line), text.rfind(line));

@@ -1,9 +1,7 @@
 // Ten million rays in one call, against the same rays one by one and brute force about some of them; at full scale
 // only.
 #include <algorithm>
-#include <cstdlib>
 #include <functional>
-#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -11,6 +9,7 @@
 
 #include "accel/scenes.h"
 #include "base/parallel.h"
+#include "support/mesh_families.h"
 #include "support/same_bits.h"
 
 namespace raygrain::test {
@@ -18,11 +17,6 @@ namespace {
 
 constexpr Vec3 kLight{0.3f, -0.9f, 0.2f}, kLamp{0.1f, 0.2f, 0.3f};
 constexpr size_t kRays = 10'000'019;  // the last piece is no whole one, however a call is divided
-
-bool is_full_scale() {
-  const char* scale = std::getenv("RAYGRAIN_TEST_SCALE");
-  return scale != nullptr && std::string_view(scale) == "full";
-}
 
 Accelerator make_scene() {
   const TriangleMesh mesh = random_mesh(300, 4);

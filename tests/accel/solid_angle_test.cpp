@@ -27,10 +27,6 @@ namespace {
 
 using RaysOfFrusta = std::vector<std::vector<Ray>>;
 
-bool is_full_scale() {
-  return test::seed_count(1) == 10;
-}
-
 /// Trees of a lamp's six frusta, made for one density.
 struct LampTrees {
   std::vector<FrameTree> frames;
@@ -123,7 +119,7 @@ double time_ratio(const Question& question, const LampTrees& trees, const LampTr
 }
 
 std::vector<Scene> scenes() {
-  const bool full = is_full_scale();
+  const bool full = test::is_full_scale();
   std::vector<Scene> scenes;
   for (const ProceduralOptions& options :
        {ProceduralOptions{"city", full ? 15u : 3u}, {"forest", full ? 16u : 3u}, {"terrain", full ? 224u : 30u}}) {
@@ -181,13 +177,13 @@ size_t differences(const LampTrees& a, const LampTrees& b, const RaysOfFrusta& f
 TEST(SolidAngleTrees, AnswerAlikeAndWhatTheyAreWorth) {
   for (const Scene& scene : scenes())
     for (const float height : {0.6f, 1.2f}) {
-      if (height > 1 && !is_full_scale()) continue;
+      if (height > 1 && !test::is_full_scale()) continue;
       const Bounds box = mesh_bounds(scene.mesh);
       const Vec3 lamp = lamp_in(box, height);
       const std::vector<InfluenceArea> areas = point_light_areas("lamp", lamp, box);
       const LampTrees plane(scene.mesh, areas, RayDensity::kNearPlane),
           solid(scene.mesh, areas, RayDensity::kSolidAngle);
-      const size_t count = is_full_scale() ? 20000 : 600;
+      const size_t count = test::is_full_scale() ? 20000 : 600;
       const RaysOfFrusta from = rays_from(areas, count), to = rays_to(areas, scene.mesh, lamp, count);
       EXPECT_EQ(differences(solid, plane, from, to), 0u);
       std::cout << scene.name << ", " << scene.mesh.triangle_count() << " triangles, lamp at " << height << ": build "
@@ -198,7 +194,7 @@ TEST(SolidAngleTrees, AnswerAlikeAndWhatTheyAreWorth) {
         EXPECT_GT(ratio, 0.7);
         EXPECT_LT(ratio, 1.4);
         std::cout << "; " << question.name << ": cost " << ratio;
-        if (is_full_scale()) std::cout << ", time " << time_ratio(question, solid, plane);
+        if (test::is_full_scale()) std::cout << ", time " << time_ratio(question, solid, plane);
       }
       std::cout << std::endl;
     }

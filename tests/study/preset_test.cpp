@@ -10,6 +10,7 @@
 #include "raygrain/study.h"
 
 #include "study/table.h"
+#include "support/mesh_families.h"
 #include "support/shared.h"
 
 namespace raygrain {
@@ -55,11 +56,6 @@ std::string scenes_folder() {
   return file ? std::filesystem::path(*file).parent_path().string() : std::string();
 }
 
-bool is_full_scale() {
-  const char* scale = std::getenv("RAYGRAIN_TEST_SCALE");
-  return scale != nullptr && std::string_view(scale) == "full";
-}
-
 StudyTable run(const Expectation& expectation, const std::string& folder) {
   const StudySources sources{expectation.shared ? scenes_folder() : "", expectation.only, expectation.rays, 1,
                              expectation.quick};
@@ -86,7 +82,7 @@ class Preset : public testing::TestWithParam<Expectation> {};
 
 TEST_P(Preset, EqualsTheCommittedTable) {
   const Expectation& expectation = GetParam();
-  if (expectation.full && !is_full_scale()) GTEST_SKIP() << "at full scale only";
+  if (expectation.full && !test::is_full_scale()) GTEST_SKIP() << "at full scale only";
   if (expectation.shared && scenes_folder().empty()) GTEST_SKIP() << "needs ../shared/scenes";
   const test::TemporaryFolder folder;
   const auto rows = deterministic(run(expectation, folder.path()), expectation.study);

@@ -15,4 +15,7 @@ using raygrain::NamedMesh;
 /// (instrumented builds), ten times as many for RAYGRAIN_TEST_SCALE=full. At least one.
 uint64_t seed_count(uint64_t usual);
 
+/// RAYGRAIN_TEST_SCALE=full: for tests that take minutes.
+bool is_full_scale();
+
 }  // namespace raygrain::test

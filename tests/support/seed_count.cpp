@@ -1,16 +1,27 @@
 #include <algorithm>
 #include <cstdlib>
-#include <string>
+#include <string_view>
 
 #include "support/mesh_families.h"
 
 namespace raygrain::test {
 
-uint64_t seed_count(uint64_t usual) {
+namespace {
+
+bool is_scale(std::string_view name) {
   const char* scale = std::getenv("RAYGRAIN_TEST_SCALE");
-  const std::string name = scale ? scale : "";
-  if (name == "full") return 10 * usual;
-  return name == "small" ? std::max<uint64_t>(usual / 4, 1) : usual;
+  return scale != nullptr && scale == name;
+}
+
+}  // namespace
+
+uint64_t seed_count(uint64_t usual) {
+  if (is_full_scale()) return 10 * usual;
+  return is_scale("small") ? std::max<uint64_t>(usual / 4, 1) : usual;
+}
+
+bool is_full_scale() {
+  return is_scale("full");
 }
 
 }  // namespace raygrain::test
