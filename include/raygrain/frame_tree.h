@@ -101,7 +101,7 @@ struct FrameBuildOptions {
 /// this frame cannot be made (see FrameTree). `cost` gets the estimated cost of all rays of the distribution, up to a
 /// factor that does not depend on the frame: less is better. Throws Error: kUsage for no corners, an id that they do
 /// not have, an instruction set that this CPU lacks, weights or a z term that are negative or not finite, weights.z =
-/// 0, weights that are no float multiples of weights.z, and kSolidAngle in a frame that is not projective; kLimit
+/// 0, weights whose ratio to weights.z is beyond float, and kSolidAngle in a frame that is not projective; kLimit
 /// beyond 2^33 bytes.
 std::optional<FrameTree> build_frame_tree(const RayFrame& frame, std::shared_ptr<const TriangleCorners> corners,
                                           std::span<const uint32_t> triangles, const FrameBuildOptions& options = {},

@@ -40,17 +40,6 @@ PointArea point_area(Vec3 eye, Vec3 forward, Vec3 up, const Bounds& scene) {
   return area;
 }
 
-// By bisection: the C library's arc tangent differs between machines.
-double arc_tangent(double value) {
-  double lo = 0, hi = kPi / 2;
-  for (int i = 0; i < 60; ++i) {
-    const double middle = (lo + hi) / 2;
-    const SineCosine both = sine_cosine(middle);
-    (both.sine < value * both.cosine ? lo : hi) = middle;
-  }
-  return lo;
-}
-
 }  // namespace
 
 InfluenceArea directional_light_area(const std::string& name, Vec3 direction, const Bounds& scene) {
@@ -105,7 +94,7 @@ InfluenceArea camera_area(const std::string& name, Vec3 eye, Vec3 target, float 
   camera.fov_y = fov_y;
   validate({name, camera}, name);  // before the tangent of half of it
   const double tan_y = tangent(radians(static_cast<double>(fov_y) / 2));
-  camera.fov_x = static_cast<float>(2 * arc_tangent(static_cast<double>(aspect) * tan_y) * (180 / kPi));
+  camera.fov_x = static_cast<float>(2 * arctangent(static_cast<double>(aspect) * tan_y, 1) * (180 / kPi));
   InfluenceArea area{name, camera};
   validate(area, name);
   return area;

@@ -131,8 +131,11 @@ TEST(LargeBatches, TenMillionRaysOfArraysAreAnsweredAsSingleRays) {
                                           : Ray{p, kLight});
   std::vector<uint8_t> flags(kRays, 7);
   std::vector<Hit> hits(kRays, Hit{7, 7, 7, 7});
-  scene.occluded(rays, flags, 0);
-  scene.intersect(rays, hits, 0);
+  AcceleratorCounters any, nearest;
+  scene.occluded(rays, flags, 0, &any);
+  scene.intersect(rays, hits, 0, &nearest);
+  EXPECT_GT(any.covered, kRays / 2);
+  EXPECT_GT(nearest.covered, kRays / 10);
   EXPECT_EQ(count_wrong([&](size_t i) {
               return flags[i] == (scene.occluded(rays[i]) ? 1 : 0) && same_bits(hits[i], scene.intersect(rays[i])) &&
                      (!is_sample(i) || same_bits(hits[i], intersect_reference(scene.mesh(), rays[i])));

@@ -124,6 +124,7 @@ TEST(FrameTree, ObliquenessCostsNothing) {
   for (size_t i = 0; i < kinds.size(); ++i) std::cout << ' ' << name(kinds[i]) << ' ' << chosen[i] / rotated[i];
   std::cout << '\n';
   EXPECT_LE(spread(rotated), 1.05);
+  EXPECT_LE(spread(chosen), 1.25);
   EXPECT_GE(spread(in_world), 1.1);
 }
 
