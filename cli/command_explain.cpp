@@ -138,8 +138,9 @@ std::string explanation_text(const Options& options, const Scene& scene, Explana
   const std::string table = times_table(explanation);
   for (AreaReport& area : explanation.areas) area.times.clear();  // stand in the table
   const bool has_none = options.rays.is_given() && explanation.counters.rays == 0;
-  return fmt::format("{}: {} triangles, {} areas\n\n{}\n{}{}", scene.name, scene.mesh.triangle_count(),
-                     explanation.areas.size(), table, to_text(explanation), has_none ? "0 rays given\n" : "");
+  const size_t count = explanation.areas.size();
+  return fmt::format("{}: {} triangles, {} area{}\n\n{}\n{}{}", scene.name, scene.mesh.triangle_count(), count,
+                     count == 1 ? "" : "s", table, to_text(explanation), has_none ? "0 rays given\n" : "");
 }
 
 int explain(const Options& options) {
