@@ -29,7 +29,7 @@ std::optional<FrameUnderTest> make_frame_tree(const StructureSpec& spec, const V
   const AreaGeometry geometry(*area);
   const FrameKind kind = parse_frame(spec.frame);
   const Bounds box = mesh_bounds(*scene.mesh);
-  const Vec3 direction = to_float(geometry.ray_direction(geometry.region().corners[0]));
+  const Vec3 direction = to_float(normalized(geometry.ray_direction(geometry.region().corners[0])));
   const std::optional<RayFrame> frame =
       spec.of_area ? area_frame(kind, geometry) : parallel_frame(kind, direction, is_empty(box) ? Vec3{} : center(box));
   if (!frame) return {};

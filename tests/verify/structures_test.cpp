@@ -169,6 +169,18 @@ TEST(RandomStructures, AreReinsertedByTheirOwnMeasureWhereTheNameSaysSo) {
   EXPECT_GT(ratios.size(), 10u);
 }
 
+/// Rays of a lamp whose region reaches beyond floats have directions all the same.
+TEST(RandomStructures, FramesOfHugeAreasCanBeMade) {
+  VerifyScene scene = scene_with_areas();
+  PointArea lamp;
+  lamp.fov_x = lamp.fov_y = 150;
+  lamp.near_z = 0x1p127f;
+  lamp.far_z = 0x1.8p127f;
+  scene.areas = {{"lamp", lamp}};
+  for (const char* frame : {"rotation", "shear_x", "shear_y", "shear_z"})
+    EXPECT_NO_THROW(make_frame(parse_spec(std::string("frame seed=1 frame=") + frame), scene)) << frame;
+}
+
 bool counts(const std::string& structure, const VerifyScene& scene, const std::string& aspect) {
   return std::ranges::count(aspects_of(structure, scene, RayGroupKind::kMixed), aspect) == 1;
 }
