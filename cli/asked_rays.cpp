@@ -1,13 +1,13 @@
 #include "cli/asked_rays.h"
 
 #include <algorithm>
-#include <bit>
 #include <mutex>
 
 #include "raygrain/compare.h"
 
 #include "base/parallel.h"
 #include "base/timer.h"
+#include "geometry/same_bits.h"
 
 namespace raygrain::cli {
 
@@ -15,10 +15,7 @@ namespace {
 
 constexpr size_t kPiece = 65536;  // of rays that are asked together: large, for between them progress is told
 
-bool same_bits(const Hit& a, const Hit& b) {
-  using Bits = std::array<uint32_t, 4>;
-  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
-}
+using raygrain::same_bits;
 bool same_bits(uint8_t flag, const Hit& hit) {
   return flag == (is_hit(hit) ? 1 : 0);
 }

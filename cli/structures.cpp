@@ -17,8 +17,7 @@ LocalSpace parse_space(const std::string& text) {
 }
 
 FrameKind parse_frame(const std::string& text) {
-  for (const FrameKind kind :
-       {FrameKind::kRotation, FrameKind::kShearX, FrameKind::kShearY, FrameKind::kShearZ, FrameKind::kProjective})
+  for (const FrameKind kind : kFrameKinds)
     if (text == name(kind)) return kind;
   fail_usage("--frame", "unknown frame '" + text + "'", "Known: rotation, shear_x, shear_y, shear_z, projective");
 }

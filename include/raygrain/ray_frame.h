@@ -19,6 +19,8 @@ namespace raygrain {
 /// How a frame maps the world. Parallel rays: turned, or sheared along the rays onto the coordinate plane across an
 /// axis (faces parallel to that plane, and edges along its axes, stay so). Rays through a point: (x/z, y/z, -1/z).
 enum class FrameKind : uint8_t { kRotation, kShearX, kShearY, kShearZ, kProjective };
+inline constexpr FrameKind kFrameKinds[] = {FrameKind::kRotation, FrameKind::kShearX, FrameKind::kShearY,
+                                            FrameKind::kShearZ, FrameKind::kProjective};
 
 /// "rotation", "shear_x", "shear_y", "shear_z", "projective".
 const char* name(FrameKind kind);

@@ -12,8 +12,6 @@
 namespace raygrain {
 namespace {
 
-constexpr FrameKind kAllKinds[] = {FrameKind::kRotation, FrameKind::kShearX, FrameKind::kShearY, FrameKind::kShearZ,
-                                   FrameKind::kProjective};
 /// A shear's axis has at least this part of the direction's largest component: its map lengthens nothing by more.
 constexpr double kLeastShearComponent = 0.1;
 
@@ -167,7 +165,7 @@ std::optional<RayFrame> area_frame(FrameKind kind, const AreaGeometry& area) {
 
 std::vector<FrameKind> frame_kinds(const AreaGeometry& area) {
   std::vector<FrameKind> kinds;
-  for (const FrameKind kind : kAllKinds)
+  for (const FrameKind kind : kFrameKinds)
     if (area_frame(kind, area)) kinds.push_back(kind);
   return kinds;
 }

@@ -1,11 +1,10 @@
 #include "study/hit_check.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "geometry/same_bits.h"
 
 namespace raygrain {
 
@@ -22,18 +21,12 @@ std::vector<Hit> find_hits(std::span<const Ray> rays, const Search& search, unsi
   return hits;
 }
 
-bool is_same_hit(const Hit& a, const Hit& b) {
-  using Bits = std::array<uint32_t, 4>;
-  static_assert(sizeof(Hit) == sizeof(Bits), "padding would be compared");
-  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
-}
-
 size_t count_mismatches(std::span<const Hit> hits, std::span<const std::vector<Hit>> expected) {
   size_t count = 0;
   for (size_t i = 0; i < hits.size(); ++i) {
     const bool same = std::all_of(expected.begin(), expected.end(), [&](const std::vector<Hit>& list) {
       RAYGRAIN_CHECK_EQ(list.size(), hits.size());
-      return is_same_hit(hits[i], list[i]);
+      return same_bits(hits[i], list[i]);
     });
     count += same ? 0 : 1;
   }

@@ -16,9 +16,6 @@ using Search = std::function<Hit(const Ray&)>;  // safe to call from several thr
 std::vector<Hit> find_hits(std::span<const Ray> rays, const Search& search, unsigned threads,
                            const std::function<void(double part)>& tell = {});
 
-/// Equal in every bit?
-bool is_same_hit(const Hit& a, const Hit& b);
-
 /// Rays whose hit differs from at least one of the expected lists (each as long as `hits`).
 size_t count_mismatches(std::span<const Hit> hits, std::span<const std::vector<Hit>> expected);
 

@@ -7,7 +7,7 @@
 
 #include "base/random.h"
 #include "base/timer.h"
-#include "study/hit_check.h"
+#include "geometry/same_bits.h"
 #include "study/presets.h"
 #include "study/scene_pool.h"
 #include "study/sources.h"
@@ -94,7 +94,7 @@ std::vector<std::string> run_row(const Everything& all, double foreign, size_t c
     AcceleratorCounters own;
     const Hit hit = accelerator.intersect(ray, &own);
     TraceCounters global;
-    mismatches += is_same_hit(hit, intersect(*all.global, *all.mesh, ray, {}, {}, &global)) ? 0 : 1;
+    mismatches += same_bits(hit, intersect(*all.global, *all.mesh, ray, {}, {}, &global)) ? 0 : 1;
     alone.add(global);
     if (own.global_searches > 0) {
       misses.add(global);

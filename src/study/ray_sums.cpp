@@ -2,7 +2,7 @@
 
 #include "raygrain/analyze.h"
 
-#include "study/hit_check.h"
+#include "geometry/same_bits.h"
 
 namespace raygrain::study {
 namespace {
@@ -44,7 +44,7 @@ RaySums sum_rays(const TreeTest& test) {
       sums.local_pruned += local.pruned;
       sums.local_squares += local.full * local.full;
       accepted = is_hit(local.hit) && test.accepts(ray, local.hit);
-      sums.mismatches += accepted && !is_same_hit(local.hit, global.hit) ? 1 : 0;
+      sums.mismatches += accepted && !same_bits(local.hit, global.hit) ? 1 : 0;
     }
     sums.accepted += accepted ? 1 : 0;
     if (accepted) continue;

@@ -1,11 +1,11 @@
 #include "verify/compare.h"
 
 #include <array>
-#include <bit>
 #include <cstdio>
 #include <exception>
 #include <numeric>
 
+#include "geometry/same_bits.h"
 #include "verify/aspects.h"
 #include "verify/oracle.h"
 
@@ -65,11 +65,6 @@ bool is_really_wrong(const Round& round, const Room& room, size_t group, size_t 
 }
 
 }  // namespace
-
-bool same_bits(const Hit& a, const Hit& b) {
-  using Bits = std::array<uint32_t, 4>;
-  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
-}
 
 std::optional<Difference> compare(const RayStructure& structure, const Round& round, VerifyTally& tally) {
   std::optional<Difference> first;

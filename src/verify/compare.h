@@ -15,9 +15,6 @@ struct Difference {
   bool is_about_making = false;  // making it, or asking it, threw
 };
 
-/// t, u, v and id, bit by bit.
-bool same_bits(const Hit& a, const Hit& b);
-
 /// Asks the structure about all groups and counts; the first difference, if any.
 std::optional<Difference> compare(const RayStructure& structure, const Round& round, VerifyTally& tally);
 

@@ -10,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "base/timer.h"
+#include "geometry/same_bits.h"
 #include "verify/compare.h"
 #include "verify/minimise.h"
 #include "verify/watertight.h"

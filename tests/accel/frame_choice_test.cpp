@@ -112,11 +112,8 @@ bool are_alike(const FrameTree& a, const FrameTree& b, const std::vector<Ray>& r
 FrameTree tree_of(const TriangleMesh& mesh, InfluenceArea area, float tolerance, FrameKind kind) {
   area.tolerance = tolerance;
   AcceleratorOptions options;
-  options.space = LocalSpace::kRay;
-  options.routing = Routing::kAreas;
-  options.coverage.reset();
   options.frame = kind;
-  return *Accelerator(mesh, {area}, options).local_trees()[0].in_ray_space;
+  return test::tree_in_ray_space(mesh, area, options);
 }
 
 // Without a tolerance the tree for columns, bit for bit; with 5 degrees another.

@@ -22,6 +22,14 @@ inline void add_floor(TriangleMesh& mesh, float z, float radius) {
   add_triangle(mesh, {-4 * radius, -2 * radius, z}, {4 * radius, -2 * radius, z}, {0, 4 * radius, z});
 }
 
+/// The area's tree in ray space, in an accelerator whose areas have nothing else.
+inline FrameTree tree_in_ray_space(const TriangleMesh& mesh, const InfluenceArea& area, AcceleratorOptions options) {
+  options.space = LocalSpace::kRay;
+  options.routing = Routing::kAreas;
+  options.coverage.reset();
+  return *Accelerator(mesh, {area}, options).local_trees()[0].in_ray_space;
+}
+
 /// The box |x|, |y| <= half, z_begin <= z <= z_begin + depth, with rays along +z.
 inline InfluenceArea z_area(const std::string& name, float z_begin, float depth, float half = 1,
                             float tolerance = 0.01f) {

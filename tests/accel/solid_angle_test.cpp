@@ -16,6 +16,7 @@
 #include "raygrain/scene.h"
 
 #include "accel/build_trees.h"
+#include "accel/scenes.h"
 #include "base/timer.h"
 #include "support/isotropic_rays.h"
 #include "support/mesh_families.h"
@@ -202,11 +203,8 @@ TEST(SolidAngleTrees, AnswerAlikeAndWhatTheyAreWorth) {
 
 FrameTree tree_of(const TriangleMesh& mesh, const InfluenceArea& area, RayDensity density) {
   AcceleratorOptions options;
-  options.space = LocalSpace::kRay;
-  options.routing = Routing::kAreas;
-  options.coverage.reset();
   options.density = density;
-  return *Accelerator(mesh, {area}, options).local_trees()[0].in_ray_space;
+  return test::tree_in_ray_space(mesh, area, options);
 }
 
 bool are_alike(const FrameTree& a, const FrameTree& b, std::span<const Ray> rays) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/same_bits.h"
 #include "study/progress.h"
 
 namespace raygrain {
@@ -11,13 +12,13 @@ namespace {
 
 TEST(HitCheck, EveryBitCounts) {
   const Hit hit{1.5f, 0.25f, 0.5f, 7};
-  EXPECT_TRUE(is_same_hit(hit, hit));
-  EXPECT_TRUE(is_same_hit(Hit{}, Hit{}));
-  EXPECT_FALSE(is_same_hit(hit, {std::nextafter(1.5f, 2.0f), 0.25f, 0.5f, 7}));
-  EXPECT_FALSE(is_same_hit(hit, {1.5f, std::nextafter(0.25f, 0.0f), 0.5f, 7}));
-  EXPECT_FALSE(is_same_hit(hit, {1.5f, 0.25f, 0.5000001f, 7}));
-  EXPECT_FALSE(is_same_hit(hit, {1.5f, 0.25f, 0.5f, 6}));
-  EXPECT_FALSE(is_same_hit({0.0f, 0, 0, 1}, {-0.0f, 0, 0, 1}));  // equal numbers, different bits
+  EXPECT_TRUE(same_bits(hit, hit));
+  EXPECT_TRUE(same_bits(Hit{}, Hit{}));
+  EXPECT_FALSE(same_bits(hit, {std::nextafter(1.5f, 2.0f), 0.25f, 0.5f, 7}));
+  EXPECT_FALSE(same_bits(hit, {1.5f, std::nextafter(0.25f, 0.0f), 0.5f, 7}));
+  EXPECT_FALSE(same_bits(hit, {1.5f, 0.25f, 0.5000001f, 7}));
+  EXPECT_FALSE(same_bits(hit, {1.5f, 0.25f, 0.5f, 6}));
+  EXPECT_FALSE(same_bits({0.0f, 0, 0, 1}, {-0.0f, 0, 0, 1}));  // equal numbers, different bits
 }
 
 TEST(HitCheck, CountsRaysNotDifferences) {

@@ -1,17 +1,10 @@
-// Hits compared bit by bit, so that zeros of either sign and NaN are told apart.
+// same_bits where tests look for it.
 #pragma once
 
-#include <array>
-#include <bit>
-#include <cstdint>
-
-#include "raygrain/ray.h"
+#include "geometry/same_bits.h"
 
 namespace raygrain::test {
 
-inline bool same_bits(const Hit& a, const Hit& b) {
-  using Bits = std::array<uint32_t, 4>;
-  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
-}
+using raygrain::same_bits;
 
 }  // namespace raygrain::test

@@ -13,6 +13,7 @@
 
 #include "base/random.h"
 #include "support/mesh_families.h"
+#include "support/same_bits.h"
 #include "verify/compare.h"
 #include "verify/oracle.h"
 
@@ -20,7 +21,6 @@ namespace raygrain::test {
 namespace {
 
 using verification::Oracle;
-using verification::same_bits;
 
 constexpr Vec3 kLight{0.3f, -0.9f, 0.2f};
 constexpr unsigned kThreads = 6;

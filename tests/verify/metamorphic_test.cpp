@@ -23,12 +23,11 @@
 
 #include "base/random.h"
 #include "support/mesh_families.h"
+#include "support/same_bits.h"
 #include "verify/compare.h"
 
 namespace raygrain::test {
 namespace {
-
-using verification::same_bits;
 
 std::vector<Hit> answers_of(const TriangleMesh& mesh, const std::vector<Ray>& rays) {
   std::vector<Hit> hits;

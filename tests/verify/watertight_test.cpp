@@ -12,6 +12,7 @@
 #include "raygrain/verify.h"
 
 #include "support/mesh_families.h"
+#include "support/same_bits.h"
 #include "verify/compare.h"
 
 namespace raygrain::test {
@@ -20,7 +21,6 @@ namespace {
 using verification::crosses_evenly;
 using verification::hits_in_order;
 using verification::Oracle;
-using verification::same_bits;
 
 const std::vector<std::string> kStructures{
     "binary tree=SAH+ALL@spatial", "wide leaf=4", "wide tree=SAH+ALL@sweep batch=16",
