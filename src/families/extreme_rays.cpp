@@ -114,8 +114,9 @@ Ray beside(Aim& aim) {
 
 /// Away from a hair above or below the surface, often only a hair long: what shadow and bounce rays do.
 Ray from_a_hair_above(Aim& aim) {
-  const Vec3d start =
-      aim.target() + aim.direction() * (aim.size() * std::ldexp(1.0, -8 - static_cast<int>(aim.random.below(24))));
+  const double height = aim.size() * std::ldexp(1.0, -8 - static_cast<int>(aim.random.below(24)));
+  const Vec3d offset = aim.direction() * height;
+  const Vec3d start = aim.target() + offset;
   const Vec3 origin = clamped_to_float(start);
   Ray ray{origin, clamped_to_float(aim.random.below(2) ? aim.target() - to_double(origin) : aim.direction())};
   const double ends[] = {1, 1e-3, 1e-6, 1 - 1e-6};
@@ -206,8 +207,10 @@ std::vector<Vec3> points_near(const TriangleMesh& mesh, Vec3 direction, size_t c
     const double shifts[] = {0, 1e-6, -1e-6, 1e-4, -1e-4, 0.1, -0.1, 1, -1, 2, -2, 30, -30};
     if (step > 0)
       p = p + d * (step * shifts[aim.random.below(std::size(shifts))]);
-    else if (aim.random.below(2))
-      p = p + aim.direction() * (aim.size() * std::ldexp(1.0, -static_cast<int>(aim.random.below(30))));
+    else if (aim.random.below(2)) {
+      const double distance = aim.size() * std::ldexp(1.0, -static_cast<int>(aim.random.below(30)));
+      p = p + aim.direction() * distance;
+    }
     points.push_back(clamped_to_float(p));
   }
   return points;

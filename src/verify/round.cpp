@@ -237,7 +237,8 @@ Round make_round(const VerifyOptions& options, uint64_t number) {
   if (chosen.file != nullptr) {
     round.scene = {chosen.file->name, std::make_shared<const TriangleMesh>(chosen.file->mesh), chosen.file->areas};
   } else {
-    NamedMesh mesh = random_family_mesh(random_size(random), random.next());
+    const uint64_t seed = random.next();
+    NamedMesh mesh = random_family_mesh(random_size(random), seed);
     round.scene = {mesh.name, std::make_shared<const TriangleMesh>(std::move(mesh.mesh)), {}};
     round.closed = mesh.closed;
     inside = mesh.inside;

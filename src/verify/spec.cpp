@@ -65,10 +65,12 @@ bool one_in(Random& random, uint64_t n) {
   return random.below(n) == 0;
 }
 
+/// One name after the other: within an expression each compiler would draw in its own order.
 std::string random_recipe(Random& random, const Registry& registry) {
-  return registry.measures[random.below(registry.measures.size())].name + "+" +
-         registry.orientations[random.below(registry.orientations.size())].name + "@" +
-         registry.builders[random.below(registry.builders.size())].name;
+  const std::string builder = registry.builders[random.below(registry.builders.size())].name;
+  const std::string orientation = registry.orientations[random.below(registry.orientations.size())].name;
+  const std::string measure = registry.measures[random.below(registry.measures.size())].name;
+  return measure + "+" + orientation + "@" + builder;
 }
 
 /// A global tree knows no area.

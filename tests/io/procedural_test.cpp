@@ -1,5 +1,4 @@
 #include <cmath>
-#include <cstring>
 #include <set>
 #include <string>
 
@@ -8,20 +7,10 @@
 #include "raygrain/error.h"
 #include "raygrain/scene.h"
 
+#include "support/fingerprint.h"
+
 namespace raygrain {
 namespace {
-
-// FNV-1a over the bytes of vertices and triangles.
-uint64_t fingerprint(const TriangleMesh& mesh) {
-  uint64_t hash = 0xcbf29ce484222325u;
-  const auto add = [&](const void* data, size_t bytes) {
-    const auto* byte = static_cast<const unsigned char*>(data);
-    for (size_t i = 0; i < bytes; ++i) hash = (hash ^ byte[i]) * 0x100000001b3u;
-  };
-  add(mesh.vertices.data(), mesh.vertices.size() * sizeof(Vec3));
-  add(mesh.triangles.data(), mesh.triangles.size() * sizeof(mesh.triangles[0]));
-  return hash;
-}
 
 void expect_triangle(const TriangleMesh& mesh, size_t triangle, const std::array<Vec3d, 3>& expected) {
   for (int corner = 0; corner < 3; ++corner)
@@ -121,7 +110,8 @@ TEST(Procedural, SameOptionsGiveTheSameBytes) {
   std::set<uint64_t> seen;
   for (const auto& [options, expected] : table) {
     SCOPED_TRACE(options.kind + " size " + std::to_string(options.size) + " seed " + std::to_string(options.seed));
-    const uint64_t found = fingerprint(generate_scene(options).mesh);
+    const TriangleMesh mesh = generate_scene(options).mesh;
+    const uint64_t found = test::fingerprint(mesh.vertices, mesh.triangles);
     EXPECT_EQ(found, expected) << std::hex << "0x" << found;
     EXPECT_TRUE(seen.insert(found).second) << "two scenes are alike";
   }

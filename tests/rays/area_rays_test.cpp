@@ -8,12 +8,14 @@
 #include "raygrain/rays.h"
 
 #include "rays/statistics.h"
+#include "support/fingerprint.h"
 
 namespace raygrain {
 namespace {
 
 using test::bin;
 using test::chi_square_deviation;
+using test::fingerprint;
 
 constexpr size_t kCount = 20000;
 constexpr double kDegrees = std::numbers::pi / 180;
@@ -36,16 +38,6 @@ std::vector<InfluenceArea> all_areas() {
 
 bool same(const Ray& a, const Ray& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
-}
-
-uint64_t fingerprint(const std::vector<Ray>& rays) {
-  uint64_t hash = 0xcbf29ce484222325u;
-  for (const Ray& ray : rays) {
-    unsigned char bytes[sizeof ray];
-    std::memcpy(bytes, &ray, sizeof ray);
-    for (const unsigned char byte : bytes) hash = (hash ^ byte) * 0x100000001b3u;
-  }
-  return hash;
 }
 
 // Window coordinates of the ray's origin in [0, 1]^2, and its depth share.

@@ -100,21 +100,6 @@ TEST(RandomStructures, AreOfEveryKind) {
   for (const std::string& word : expected) EXPECT_EQ(words.count(word), 1u) << word;
 }
 
-// As before there were newer words and measures, but for the instruction set, which the CPU decides about.
-TEST(RandomStructures, ASeedDrawsWhatItDrew) {
-  const auto without_isa = [](uint64_t seed) {
-    std::string name = random_structure(seed).name;
-    if (const size_t at = name.find(" isa="); at != std::string::npos) name.erase(at, name.find(' ', at + 1) - at);
-    return name;
-  };
-  EXPECT_EQ(without_isa(0),
-            "accelerator tree=RANDOM+LSPH@spatial local=DIR+ROBIN@binned octree=0 covered=0 cells=64 tile=4 "
-            "order=open-by-tile batch=7 seed=431527");
-  EXPECT_EQ(without_isa(5), "wide tree=RANDOM+SPFH@paper area=3 batch=16 seed=752307");
-  EXPECT_EQ(without_isa(20),
-            "wide tree=VISIBLE+LSPH@paper reinserted=1 area=4 leaf=3 batch=17 unpruned=1 seed=19397 by_own_measure=1");
-}
-
 using namespace verification;
 
 VerifyScene scene_with_areas() {
