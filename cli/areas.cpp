@@ -48,10 +48,10 @@ void add_area_options(Arguments& arguments, AreaOptions& options) {
   arguments.group("Influence areas (without any: the scene's own)");
   arguments.file("--areas", "FILE.json", options.file,
                  "Areas of a JSON file (format raygrain-areas), or of a scene.json");
-  arguments.vector("--sun", options.sun,
+  arguments.vector("--sun", options.sun, "0.3,-0.8,0.5",
                    "Parallel light over the whole scene; X,Y,Z is the direction in which it travels");
-  arguments.vector("--light", options.light, "A light at this point: six frusta of 90 degrees around it");
-  arguments.two_vectors("--camera", "EYE TARGET", options.camera, "A camera: two points X,Y,Z");
+  arguments.vector("--light", options.light, "0,30,0", "A light at this point: six frusta of 90 degrees around it");
+  arguments.two_vectors("--camera", "EYE TARGET", options.camera, "9,5,9 0,0,0", "A camera: two points X,Y,Z");
   arguments.real("--fov", "DEGREES", options.field_of_view, {0.0f, 180.0f}, "Vertical field of view of --camera [60]");
   arguments.real("--aspect", "RATIO", options.aspect, {1 / kWidestAspect, kWidestAspect},
                  "Width by height of --camera [1.5]");

@@ -148,7 +148,7 @@ void Arguments::flag(const std::string& flags, bool& target, const std::string& 
 
 void Arguments::whole(const std::string& flags, uint64_t& target, Limits limits, const std::string& help) {
   const auto take = [&target, limits, name = long_name(flags)](const std::string& value) {
-    target = parse_whole(name, value, limits.lo, limits.hi);
+    target = parse_whole(name, value, limits);
   };
   describe(add_text(*app_, flags, take, help)->default_str(std::to_string(target)), "N", group_);
 }
@@ -156,7 +156,7 @@ void Arguments::whole(const std::string& flags, uint64_t& target, Limits limits,
 void Arguments::optional_whole(const std::string& flags, std::optional<uint64_t>& target, Limits limits,
                                const std::string& help) {
   const auto take = [&target, limits, name = long_name(flags)](const std::string& value) {
-    target = parse_whole(name, value, limits.lo, limits.hi);
+    target = parse_whole(name, value, limits);
   };
   describe(add_text(*app_, flags, take, help), "N", group_);
 }
@@ -169,17 +169,19 @@ void Arguments::real(const std::string& flags, const std::string& value_name, st
   describe(add_text(*app_, flags, take, help), value_name, group_);
 }
 
-void Arguments::vector(const std::string& flags, std::optional<Vec3>& target, const std::string& help) {
-  const auto take = [&target, name = long_name(flags)](const std::string& value) {
-    target = parse_vector(name, value);
+void Arguments::vector(const std::string& flags, std::optional<Vec3>& target, const std::string& example,
+                       const std::string& help) {
+  const auto take = [&target, example, name = long_name(flags)](const std::string& value) {
+    target = parse_vector(name, value, example);
   };
   describe(add_text(*app_, flags, take, help), "X,Y,Z", group_);
 }
 
 void Arguments::two_vectors(const std::string& flags, const std::string& value_names,
-                            std::optional<std::pair<Vec3, Vec3>>& target, const std::string& help) {
-  const auto take = [&target, name = long_name(flags)](const std::vector<std::string>& values) {
-    target = {parse_vector(name, values.at(0)), parse_vector(name, values.at(1))};
+                            std::optional<std::pair<Vec3, Vec3>>& target, const std::string& example,
+                            const std::string& help) {
+  const auto take = [&target, example, name = long_name(flags)](const std::vector<std::string>& values) {
+    target = {parse_vector(name, values.at(0), example), parse_vector(name, values.at(1), example)};
   };
   CLI::Option* option = app_->add_option_function<std::vector<std::string>>(flags, take, help);
   describe(option->type_size(2)->expected(1)->allow_extra_args(false), value_names, group_);

@@ -54,9 +54,9 @@ class Arguments {
   void list(const std::string& flags, const std::string& value_name, std::vector<std::string>& target,
             const std::string& help);
   void flag(const std::string& flags, bool& target, const std::string& help);
-  /// A whole number in [lo, hi].
+  /// A whole number in [lo, hi]. Where it is none, the message gives an example.
   struct Limits {
-    uint64_t lo = 0, hi = UINT64_MAX;
+    uint64_t lo = 0, hi = UINT64_MAX, example = 1000;
   };
   void whole(const std::string& flags, uint64_t& target, Limits limits, const std::string& help);
   void optional_whole(const std::string& flags, std::optional<uint64_t>& target, Limits limits,
@@ -64,9 +64,11 @@ class Arguments {
   /// A number strictly between lo and hi.
   void real(const std::string& flags, const std::string& value_name, std::optional<float>& target,
             std::pair<float, float> between, const std::string& help);
-  void vector(const std::string& flags, std::optional<Vec3>& target, const std::string& help);
+  /// `example`: a value for messages, here and below.
+  void vector(const std::string& flags, std::optional<Vec3>& target, const std::string& example,
+              const std::string& help);
   void two_vectors(const std::string& flags, const std::string& value_names,
-                   std::optional<std::pair<Vec3, Vec3>>& target, const std::string& help);
+                   std::optional<std::pair<Vec3, Vec3>>& target, const std::string& example, const std::string& help);
 
   /// Options added from now on stand under this title in the help.
   void group(const std::string& title) { group_ = title; }

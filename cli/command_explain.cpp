@@ -8,6 +8,7 @@
 
 #include "raygrain/accelerator.h"
 
+#include "base/quantity_text.h"
 #include "cli/areas.h"
 #include "cli/commands.h"
 #include "cli/environment_json.h"
@@ -123,15 +124,15 @@ std::string times_table(const Explanation& explanation) {
       return fmt::format("{:.1f} %", 100 * static_cast<double>(part) / static_cast<double>(times.rays));
     };
     const double pays = times.break_even_rays;
-    text += fmt::format("{:<{}}  {:<24} {:>11} {:>9.1f} {:>9.1f} {:>9} {:>9}\n", line.area->name, width,
-                        name(times.question), std::isinf(pays) ? "never" : fmt::format("{:.0f}", std::ceil(pays)),
-                        times.area_nanoseconds, times.global_nanoseconds, percent(times.use.covered),
-                        percent(times.use.local));
+    text +=
+        fmt::format("{:<{}}  {:<24} {:>11} {:>9.1f} {:>9.1f} {:>9} {:>9}\n", line.area->name, width,
+                    name(times.question), std::isinf(pays) ? "never" : rough_count_text(pays), times.area_nanoseconds,
+                    times.global_nanoseconds, percent(times.use.covered), percent(times.use.local));
   }
   for (const AreaReport& area : explanation.areas)
     if (const std::string_view missing = missing_times(area); !missing.empty())
       text += fmt::format("{:<{}}  {}\n", area.name, width, missing);
-  return text;
+  return text + "\"pays after\" is rough: builds are timed once\n";
 }
 
 std::string explanation_text(const Options& options, const Scene& scene, Explanation explanation) {
@@ -178,8 +179,7 @@ Action declare_explain(Arguments& arguments) {
   constexpr uint64_t kMostSamples = 1'000'000;  // more take minutes, and times are no better
   const auto options = std::make_shared<Options>();
   arguments.operand("SCENE", options->scene, kSceneHelp);
-  arguments.whole("--samples", options->samples, {1, kMostSamples},
-                  "Rays to cast and time for each area and question [4096]");
+  arguments.whole("--samples", options->samples, {1, kMostSamples}, "Rays to cast and time for each area and question");
   add_ray_options(arguments, options->rays);
   arguments.flag("--any", options->any, "Ask whether these rays hit anything, not for their nearest hits");
   add_area_options(arguments, options->areas);

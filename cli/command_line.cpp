@@ -1,9 +1,11 @@
 #include "cli/command_line.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "raygrain/report.h"
 
@@ -89,11 +91,12 @@ std::string full_name(const CLI::App& app) {
   return parent ? full_name(*parent) + " " + app.get_name() : app.get_name();
 }
 
+/// Options without their dashes, which would make any two look alike.
 std::vector<std::string> known_words(const CLI::App& app, bool options) {
   std::vector<std::string> words;
   if (options)
     for (const CLI::Option* option : app.get_options())
-      for (const std::string& name : option->get_lnames()) words.push_back("--" + name);
+      for (const std::string& name : option->get_lnames()) words.push_back(name);
   else
     for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
       words.push_back(command->get_name());
@@ -105,8 +108,9 @@ Error unexpected_word(const CLI::App& app, const std::string& word) {
   const bool option = word.starts_with('-');
   const std::vector<std::string> words = known_words(app, option);
   const std::vector<std::string_view> names(words.begin(), words.end());
-  const std::string_view near = nearest_name(option ? word.substr(0, word.find('=')) : word, names);
-  const std::string hint = near.empty() ? "" : "Did you mean " + std::string(near) + "? ";
+  const size_t dashes = option ? std::min(word.find_first_not_of('-'), word.size()) : 0;
+  const std::string_view near = nearest_name(word.substr(dashes, word.find('=') - dashes), names);
+  const std::string hint = near.empty() ? "" : fmt::format("Did you mean {}{}? ", option ? "--" : "", near);
   const char* what = option ? "is no option here" : (words.empty() ? "is one operand too many" : "is no command");
   return Error(ErrorCode::kUsage, word.empty() ? "''" : word, what, hint + "See " + full_name(app) + " --help");
 }

@@ -103,6 +103,12 @@ ProceduralOptions procedural_options(const Options& options) {
   if (!options.scene.starts_with("procedural:"))
     return {options.scene, static_cast<uint32_t>(options.size.value_or(0)), options.seed.value_or(1)};
   ProceduralOptions result = parse_procedural(options.scene);
+  const auto refuse_twice = [&](bool given, const std::string& key) {
+    if (given && options.scene.find(key + "=") != std::string::npos)
+      fail_usage("--" + key, "is there twice: also in " + options.scene, "Leave one of them out");
+  };
+  refuse_twice(options.size.has_value(), "size");
+  refuse_twice(options.seed.has_value(), "seed");
   if (options.size) result.size = static_cast<uint32_t>(*options.size);
   if (options.seed) result.seed = *options.seed;
   return result;
@@ -148,7 +154,7 @@ Action declare_generate(Arguments& arguments) {
   const auto options = std::make_shared<Options>();
   arguments.operand("KIND", options->scene,
                     "city, forest, terrain, random100 or random1000; or procedural:KIND?size=N&seed=S");
-  arguments.optional_whole("--size", options->size, {1, UINT32_MAX}, "Buildings, trees or cells per side [by kind]");
+  arguments.optional_whole("--size", options->size, {1, UINT32_MAX, 8}, "Buildings, trees or cells per side [by kind]");
   arguments.optional_whole("--seed", options->seed, {}, "Other seeds give other scenes of the kind [1]");
   add_target(arguments, *options);
   add_common(arguments, options->common);

@@ -113,7 +113,7 @@ Action declare_study(Arguments& arguments) {
                           "The folder that results.csv is written into [study/NAME]");
   arguments.whole("--rays", options->rays, {1, kMostRays}, "Rays per area");
   arguments.whole("--seed", options->seed, {0, UINT32_MAX}, "Of the rays");
-  arguments.whole("-j,--jobs", options->jobs, {0, kMostJobs}, "Rows at a time; 0 = all cores");
+  arguments.whole("-j,--jobs", options->jobs, {0, kMostJobs, 4}, "Rows at a time; 0 = all cores");
   arguments.flag("--quick", options->quick, "A few rows of each kind only");
   arguments.flag("--quiet", options->quiet, "No progress and no notes");
   arguments.footer(known_studies());

@@ -172,6 +172,7 @@ int trace(const Options& options) {
   progress.erase();
   output.save_json(trace_json(traced, scene, options.common.thread_count()));
   output.print(trace_text(traced, scene, areas.size()));
+  if (options.structures.routing != "cheapest") output.note(unused_trees_note(traced, options.structures.space));
   output.note("Written:\n  " + options.output + "\n");
   if (!traced.checked || traced.checked->wrong == 0) return kSuccess;
   throw Error(ErrorCode::kLimit, options.output, fmt::format("{} rays GOT WRONG ANSWERS", traced.checked->wrong),
@@ -195,12 +196,15 @@ Action declare_trace(Arguments& arguments) {
   arguments.text("--local", "RECIPE", options->local, "Recipe of each area's tree [PAH+ALL@binned]");
   arguments.text("--global", "RECIPE", options->global, "Recipe of the tree for all other rays [SAH+ALL@binned]");
   arguments.text("--quality", "NAME", options->quality,
-                 "Of that tree: fast, balanced or best, in place of its builder");
-  arguments.flag("--reinsert", options->reinsert, "Improve that tree by reinsertion, under its measure");
+                 "Of the global tree: fast, balanced or best, in place of its builder");
+  arguments.flag("--reinsert", options->reinsert, "Improve the global tree by reinsertion, under its measure");
   arguments.flag("--reinsert-local", options->reinsert_local, "Improve the areas' trees, likewise");
   arguments.text("--wide-measure", "NAME", options->wide_measure,
                  "What makes the wide forms of the areas' trees, e.g. VISIBLE [their recipe's]");
-  arguments.file("--tree", "FILE.rgt", options->tree, "A built tree of the whole scene in place of that tree");
+  arguments.file(
+      "--tree", "FILE.rgt", options->tree,
+      "A built tree of the whole scene in place of the global tree; areas then have trees of the world alone, no "
+      "coverage");
   arguments.text("--traversal", "NAME", options->traversal, "Form of the trees: wide, or binary (slower) [wide]");
   add_structure_options(arguments, options->structures, Routing::kAreas);
   add_common(arguments, options->common);

@@ -49,10 +49,9 @@ VerifyOptions verify_options(const Options& options, Progress& progress) {
   result.progress = [&progress, rays = static_cast<double>(result.rays),
                      seconds = result.seconds](const VerifyTally& t) {
     const double done = std::max(static_cast<double>(t.rays) / rays, t.seconds / seconds);
-    progress.show(
-        fmt::format("{:.1f} million rays, {:.3f} million per second, {} differences", static_cast<double>(t.rays) / 1e6,
-                    static_cast<double>(t.rays) / t.seconds / 1e6, t.differences + t.leaks),
-        done);
+    progress.show(fmt::format("{} differences, {:.1f} M rays, {:.2f} M/s", t.differences + t.leaks,
+                              static_cast<double>(t.rays) / 1e6, static_cast<double>(t.rays) / t.seconds / 1e6),
+                  done);
   };
   return result;
 }

@@ -160,7 +160,7 @@ Action declare_view(Arguments& arguments) {
   arguments.whole("--seed", options->seed, {}, "Of the rays that the page casts at first, and of samples");
   arguments.output("--out", "view.html", options->page, "Write the page: one file, which needs no network");
   arguments.flag("--serve", options->serve, "Offer the page to browsers of this machine until interrupted");
-  arguments.whole("--port", options->port, {0, kHighestPort}, "Of --serve; 0: any that is free");
+  arguments.whole("--port", options->port, {0, kHighestPort, 8080}, "Of --serve; 0: any that is free");
   arguments.file("--template", "FILE", options->page_template, "The built page to fill [the one beside the program]");
   add_common(arguments, options->common);
   return [options] { return view_scene(*options); };

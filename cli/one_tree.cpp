@@ -1,6 +1,7 @@
 #include "cli/one_tree.h"
 
 #include <algorithm>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -10,6 +11,7 @@
 #include "raygrain/refine.h"
 
 #include "base/nearest_name.h"
+#include "base/quantity_text.h"
 #include "base/timer.h"
 #include "cli/memory.h"
 #include "cli/recipe_options.h"
@@ -51,16 +53,16 @@ void load_one_tree(OneTree& result, const TriangleMesh& mesh, const std::string&
   std::vector<uint32_t> members;
   if (result.area) members = area_members(mesh, AreaGeometry(*result.area));
   result.tree = std::make_shared<const Bvh>(load_tree_for(mesh, file, members));
-  result.log.nodes.assign(result.tree->nodes.size(), {});
+  result.file = file;
 }
 
-/// The log says nothing about nodes that reinsertion moved.
+/// The log says nothing about nodes that reinsertion moved, and is left without any.
 void improve(OneTree& tree, unsigned threads) {
   Bvh better = *tree.tree;
   ReinsertOptions options;
   options.threads = threads;
   reinsert(better, tree.measure(), options);
-  tree.log.nodes.assign(better.nodes.size(), {});
+  tree.log.nodes.clear();
   tree.tree = std::make_shared<const Bvh>(std::move(better));
 }
 
@@ -89,16 +91,20 @@ ReportRow OneTree::row() const {
   const BuildStats build = analyze_build(*tree, log);
   OverlapStats overlap;
   if (area) overlap = analyze_overlap(*tree, AreaGeometry(*area));
-  ReportRow result{recipe_name(recipe), area ? area->name : "",
-                   collect_fields(stats, area ? &overlap : nullptr, &build, nullptr, nullptr)};
-  if (!result.values.has(FieldId::kBuildSeconds)) result.values[FieldId::kBuildSeconds] = seconds;
+  const bool is_built = file.empty();
+  ReportRow result{is_built ? recipe_name(recipe) : file + ", priced as " + recipe_name(recipe), area ? area->name : "",
+                   collect_fields(stats, area ? &overlap : nullptr, is_built ? &build : nullptr, nullptr, nullptr)};
+  if (is_built && log.nodes.empty())
+    for (const FieldId id : {FieldId::kOrientationsPerNode, FieldId::kFallbackShare})
+      result.values[id] = std::numeric_limits<double>::quiet_NaN();
+  if (is_built && !result.values.has(FieldId::kBuildSeconds)) result.values[FieldId::kBuildSeconds] = seconds;
   return result;
 }
 
 std::string OneTree::peak_line() const {
   if (log.peak_bytes == 0) return "";
-  return fmt::format("  {:<28} {:>8.1f} MiB  Most memory that the builder held at once, the tree included.\n",
-                     "build_peak_memory", static_cast<double>(log.peak_bytes) / (1024 * 1024));
+  return fmt::format("  {:<28} {:>12}  Most memory that the builder held at once, the tree included.\n",
+                     "build_peak_memory", bytes_text(static_cast<double>(log.peak_bytes)));
 }
 
 std::string OneTree::sample_line() const {

@@ -35,7 +35,8 @@ struct OneTree {
   std::optional<InfluenceArea> area;  // none: all triangles of the scene
   std::vector<Ray> samples;           // of the area, for recipes that need them
   std::shared_ptr<const Bvh> tree;
-  BuildLog log;
+  BuildLog log;        // empty for a tree of a file; without nodes where reinsertion moved them
+  std::string file;    // that it came from; or empty
   double seconds = 0;  // to build it
 
   RayMeasure measure() const;

@@ -25,7 +25,7 @@ constexpr uint64_t kMostThreads = 1024;
 void add_common(Arguments& arguments, CommonOptions& options) {
   arguments.group("Common options");
   arguments.flag("-q,--quiet", options.quiet, "Print results only: no progress, no notes");
-  arguments.whole("--threads", options.threads, {0, kMostThreads}, "Threads to use; 0 = one per core");
+  arguments.whole("--threads", options.threads, {0, kMostThreads, 4}, "Threads to use; 0 = one per core");
   arguments.text("--json", "FILE|-", options.json, "Write the result as JSON to a file, or to standard output (-)");
   arguments.writes("--json", [&options] { return options.json; });
 }

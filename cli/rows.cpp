@@ -19,6 +19,12 @@ constexpr FieldId kMain[] = {kEstimatedCost, kRealCost,         kPrunedCost,    
                              kNodes,         kMaxLevel,         kMeanLeafDepth,       kBuildSeconds,
                              kTraceSeconds,  kMemoryBytes,      kMismatches};
 
+/// What a ratio that no rays can have means.
+std::string verdict_of(FieldId id, double value) {
+  if (id != kBreakEvenHitRatio) return "";
+  return value > 1 ? "never: " : value < 0 ? "always: " : "";
+}
+
 }  // namespace
 
 std::span<const FieldId> table_columns() {
@@ -42,7 +48,8 @@ std::string row_listing(const ReportRow& row) {
     if (!row.values.has(id)) continue;
     const Field& f = field(id);
     const char* unit = f.unit == "s" ? " s" : "";
-    text += fmt::format("  {:<28} {:>12}  {}\n", f.name, value_text(id, row.values[id]) + unit, f.meaning);
+    text += fmt::format("  {:<28} {:>12}  {}{}\n", f.name, value_text(id, row.values[id]) + unit,
+                        verdict_of(id, row.values[id]), f.meaning);
   }
   return text;
 }

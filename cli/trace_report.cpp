@@ -40,8 +40,9 @@ Json checked_json(const CheckedAnswers& checked) {
 }
 
 std::string checked_text(const CheckedAnswers& checked) {
-  std::string text = fmt::format("\n{:<24} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "by brute force", "coverage",
-                                 "columns", "cones", "other local", "global", "differences");
+  std::string text = "\nsearches by way (a ray may take several), checked by brute force\n";
+  text += fmt::format("{:<24} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", "question", "coverage", "columns", "cones",
+                      "other local", "global", "differences");
   for (const CheckedQuestion& q : checked.questions) {
     const AcceleratorCounters& c = q.counters;
     text += fmt::format("{:<24} {:>12} {:>12} {:>12} {:>12} {:>12} {:>12}\n", name(q.question), c.covered, c.columns,
@@ -82,7 +83,8 @@ std::string trace_json(const Traced& traced, const Scene& scene, unsigned thread
 
 std::string trace_text(const Traced& traced, const Scene& scene, size_t areas) {
   const AcceleratorCounters& c = traced.answers.counters;
-  std::string text = fmt::format("{}: {} triangles, {} areas\n", scene.name, scene.mesh.triangle_count(), areas);
+  std::string text = fmt::format("{}: {} triangles, {} area{}\n", scene.name, scene.mesh.triangle_count(), areas,
+                                 areas == 1 ? "" : "s");
   const auto line = [&](const char* name, uint64_t value) { text += fmt::format("  {:<36} {:>12}\n", name, value); };
   line("rays", traced.rays);
   line("hits", traced.answers.hit_count());
@@ -101,6 +103,15 @@ std::string trace_text(const Traced& traced, const Scene& scene, size_t areas) {
   if (!traced.checked) return text;
   line("differences from brute force", traced.checked->wrong);
   return text + checked_text(*traced.checked);
+}
+
+std::string unused_trees_note(const Traced& traced, const std::string& space) {
+  const AcceleratorCounters& c = traced.answers.counters;
+  if (space.empty() || c.local_searches > 0 || c.covered == 0) return "";
+  return fmt::format(
+      "No ray reached a tree in {} space: coverage answered {} of {} rays. Add --no-coverage to have the trees "
+      "asked.\n",
+      space, c.covered, traced.rays);
 }
 
 }  // namespace raygrain::cli

@@ -18,5 +18,7 @@ struct Traced {
 
 std::string trace_json(const Traced& traced, const Scene& scene, unsigned threads);
 std::string trace_text(const Traced& traced, const Scene& scene, size_t areas);
+/// A line where trees of this kind ("ray", "world") were asked for and coverage left no ray for them; else empty.
+std::string unused_trees_note(const Traced& traced, const std::string& space);
 
 }  // namespace raygrain::cli

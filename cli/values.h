@@ -8,6 +8,8 @@
 #include "raygrain/error.h"
 #include "raygrain/vec.h"
 
+#include "cli/arguments.h"
+
 namespace raygrain::cli {
 
 [[noreturn]] void fail_usage(const std::string& where, const std::string& what, const std::string& hint);
@@ -24,10 +26,10 @@ auto from_option(const std::string& option, ErrorCode code, const Make& make) {
   }
 }
 
-uint64_t parse_whole(const std::string& option, std::string_view text, uint64_t lo, uint64_t hi);
+uint64_t parse_whole(const std::string& option, std::string_view text, const Arguments::Limits& limits);
 /// Strictly between: the ends themselves are refused, as are infinity and NaN.
 float parse_real_between(const std::string& option, std::string_view text, float lo, float hi);
-/// Three finite numbers "X,Y,Z".
-Vec3 parse_vector(const std::string& option, std::string_view text);
+/// Three finite numbers "X,Y,Z". `example`: for messages.
+Vec3 parse_vector(const std::string& option, std::string_view text, const std::string& example);
 
 }  // namespace raygrain::cli

@@ -41,29 +41,36 @@ std::string cost_text(double nanoseconds) {
   return std::isinf(nanoseconds) ? "none" : text_line("%.0f", nanoseconds);
 }
 
-std::string route_text(const char* kind, const Route& route, std::span<const AreaCosts> costs,
-                       WayCosts AreaCosts::*which, double many, size_t area) {
+/// What the choice compared. `share_of_many`: of the global tree's costs, for arrays; coverage answers these in
+/// batches.
+std::string predictions_text(const WayCosts& costs, const double* share_of_many) {
+  if (!costs.has_samples) return " (no rays along it to sample)";
+  const double global = share_of_many != nullptr ? *share_of_many : 1;
+  const double coverage = share_of_many != nullptr ? kShareOfBatch : 1;
+  return text_line(" (predicted ns along it: coverage%s %s, tree %s, global %s; near it: tree %s, global %s)",
+                   share_of_many != nullptr ? " in batches" : "", cost_text(costs.coverage * coverage).c_str(),
+                   cost_text(costs.local).c_str(), cost_text(costs.global * global).c_str(),
+                   cost_text(costs.off_local).c_str(), cost_text(costs.off_global * global).c_str());
+}
+
+std::string route_text(const Route& route, size_t area) {
   const bool covers = route.covers[area] != 0, searches = route.searches[area] != 0;
-  std::string text = std::string(kind) + ": along it " +
-                     (covers     ? "coverage"
-                      : searches ? "its tree"
-                                 : "global tree") +
-                     ", near it " + (searches ? "its tree" : "global tree");
-  if (costs.empty()) return text;
-  const WayCosts& c = costs[area].*which;
-  if (!c.has_samples) return text + " (no rays along it to sample)";
-  return text + text_line(" (predicted ns along it: coverage %s, tree %s, global %s; near it: tree %s, global %s)",
-                          cost_text(c.coverage).c_str(), cost_text(c.local).c_str(), cost_text(c.global * many).c_str(),
-                          cost_text(c.off_local).c_str(), cost_text(c.off_global * many).c_str());
+  return std::string(": along it ") +
+         (covers     ? "coverage"
+          : searches ? "its tree"
+                     : "global tree") +
+         ", near it " + (searches ? "its tree" : "global tree");
 }
 
 /// A line for each kind of question.
 std::string routes_text(const Routes& routes, std::span<const AreaCosts> costs, ManyShares many, size_t area) {
-  return route_text("any hit", routes.any, costs, &AreaCosts::any, 1, area) + "\n" +
-         route_text("closest hit", routes.nearest, costs, &AreaCosts::nearest, 1, area) + "\n" +
-         route_text("any hit in arrays", routes.any_of_many, costs, &AreaCosts::any, many.any, area) + "\n" +
-         route_text("closest hit in arrays", routes.nearest_of_many, costs, &AreaCosts::nearest, many.nearest, area) +
-         "\n";
+  const auto line = [&](const char* kind, const Route& route, WayCosts AreaCosts::*which, const double* share) {
+    return kind + route_text(route, area) + (costs.empty() ? "" : predictions_text(costs[area].*which, share)) + "\n";
+  };
+  return line("any hit", routes.any, &AreaCosts::any, nullptr) +
+         line("closest hit", routes.nearest, &AreaCosts::nearest, nullptr) +
+         line("any hit in arrays", routes.any_of_many, &AreaCosts::any, &many.any) +
+         line("closest hit in arrays", routes.nearest_of_many, &AreaCosts::nearest, &many.nearest);
 }
 
 /// An accelerator and its global tree alone, asked about one area.

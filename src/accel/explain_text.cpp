@@ -4,6 +4,7 @@
 
 #include "raygrain/accelerator.h"
 
+#include "base/quantity_text.h"
 #include "base/text_line.h"
 
 namespace raygrain {
@@ -14,8 +15,8 @@ double percent(uint64_t part, uint64_t whole) {
   return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-double megabytes(size_t bytes) {
-  return static_cast<double>(bytes) * 1e-6;
+std::string size_text(size_t bytes) {
+  return bytes_text(static_cast<double>(bytes));
 }
 
 std::string who_answered(const AreaUse& use, uint64_t rays) {
@@ -32,7 +33,7 @@ std::string text_of(const AreaTimes& times) {
                                          times.global_nanoseconds) +
                                who_answered(times.use, times.rays) + ")\n";
   if (std::isinf(times.break_even_rays)) return "  saves nothing: " + question + measured;
-  return text_line("  pays after %.0f rays: ", std::ceil(times.break_even_rays)) + question + measured;
+  return "  pays after about " + rough_count_text(times.break_even_rays) + " rays: " + question + measured;
 }
 
 std::string text_of(const AreaReport& area, uint64_t counted) {
@@ -44,7 +45,7 @@ std::string text_of(const AreaReport& area, uint64_t counted) {
   for (const AreaTimes& t : times) text += text_of(t);
   if (const std::string_view missing = missing_times(area); !missing.empty())
     text += "  " + std::string(missing) + "\n";
-  text += text_line("  built in %.3f s, %.1f MB", area.build_seconds, megabytes(area.memory_bytes));
+  text += text_line("  built in %.3f s (timed once), ", area.build_seconds) + size_text(area.memory_bytes);
   text += area.triangles > 0 ? text_line(", %zu triangles in its tree\n", area.triangles) : "\n";
   for (size_t from = 0; from < area.routes.size();) {
     const size_t end = area.routes.find('\n', from);
@@ -73,8 +74,8 @@ std::string to_text(const Explanation& explanation) {
   std::string text;
   const AcceleratorCounters& c = explanation.counters;
   for (const AreaReport& area : explanation.areas) text += text_of(area, c.rays);
-  text += text_line("global tree: %.1f MB; shared by the areas: %.1f MB\n", megabytes(explanation.global_bytes),
-                    megabytes(explanation.shared_bytes));
+  text += "global tree: " + size_text(explanation.global_bytes) +
+          "; shared by the areas: " + size_text(explanation.shared_bytes) + "\n";
   if (c.rays == 0) return text;
   text += text_line(
       "of %llu rays: %.1f %% answered by coverage, %.1f %% by local trees, %.1f %% needed the global tree, %.1f %% "

@@ -7,9 +7,6 @@ namespace {
 
 /// What is not the global tree must be expected to save a tenth.
 constexpr double kLeastGain = 0.9;
-/// A ray of a large batch costs its coverage this share of what it costs alone, or less. Measured:
-/// docs/performance-rays.md, "How many rays a call".
-constexpr double kShareOfBatch = 0.4;
 
 constexpr size_t kMostOfEye = 254;  // coverages that Coverage::divide takes
 

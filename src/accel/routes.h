@@ -48,6 +48,10 @@ struct ManyShares {
   double any = 1, nearest = 1;
 };
 
+/// A ray of a large batch costs its coverage this share of what it costs alone, or less. Measured:
+/// docs/performance-rays.md, "How many rays a call".
+inline constexpr double kShareOfBatch = 0.4;
+
 /// The cheapest ways. Without costs every structure that is there is used.
 Routes choose_routes(std::span<const AreaGeometry> areas, std::span<const Coverage> coverages, bool has_locals,
                      std::span<const AreaCosts> costs, ManyShares many);

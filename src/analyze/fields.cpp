@@ -35,7 +35,8 @@ constexpr std::array<Row, kFieldCount> kRows{{
     {kHitRatio, {"hit_ratio", "", 0, 1, kHigh, true, "Rays that end with an accepted hit of the tree, per ray."}},
     {kBreakEvenHitRatio,
      {"break_even_hit_ratio", "", -kUnlimited, kUnlimited, kLow, true,
-      "Hit ratio above which the local tree with fallback costs less than the global tree alone."}},
+      "Hit ratio above which the local tree with fallback costs less than the global tree alone; above 1: "
+      "never, below 0: always."}},
     // Overlap of siblings.
     {kOverlap4,
      {"overlap4", "", 0, 1, kLow, true, "Common projected area of siblings per smaller sibling's, levels 0 to 4."}},

@@ -39,7 +39,7 @@ std::string_view nearest_name(std::string_view word, std::span<const std::string
   size_t best_distance = kLongestWord;
   for (const std::string_view name : names) {
     const size_t distance = edit_distance(word, name);
-    if (distance >= best_distance || 2 * distance > std::max(word.size(), name.size())) continue;
+    if (distance >= best_distance || 3 * distance > std::max(word.size(), name.size())) continue;
     best = name;
     best_distance = distance;
   }

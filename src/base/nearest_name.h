@@ -8,7 +8,7 @@
 namespace raygrain {
 
 /// The name of least edit distance (insertions, deletions, replacements and swaps of neighbours, whatever the case),
-/// the first on a tie; empty when none is near (more than half of the longer word would change).
+/// the first on a tie; empty when none is near (more than a third of the longer word would change).
 std::string_view nearest_name(std::string_view word, std::span<const std::string_view> names);
 
 /// "Known: a, b, c".

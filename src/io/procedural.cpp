@@ -74,15 +74,27 @@ Integer parse_integer(const std::string& where, std::string_view key, std::strin
   return value;
 }
 
-void parse_parameter(const std::string& where, std::string_view parameter, ProceduralOptions& options) {
+/// What was given so far.
+struct Given {
+  bool size = false, seed = false;
+};
+
+void give_once(const std::string& where, std::string_view key, bool& given) {
+  if (given) throw Error(ErrorCode::kUsage, where, std::string(key) + " is there twice", "Leave one of them out");
+  given = true;
+}
+
+void parse_parameter(const std::string& where, std::string_view parameter, Given& given, ProceduralOptions& options) {
   constexpr std::array<std::string_view, 2> kKeys{"size", "seed"};
   const size_t equals = parameter.find('=');
   const std::string_view key = parameter.substr(0, equals);
   const std::string_view value = equals == std::string_view::npos ? std::string_view{} : parameter.substr(equals + 1);
   if (key == "size") {
+    give_once(where, key, given.size);
     options.size = parse_integer<uint32_t>(where, key, value);
     if (options.size == 0) throw Error(ErrorCode::kUsage, where, "size is 0", "Leave it out for the default");
   } else if (key == "seed") {
+    give_once(where, key, given.seed);
     options.seed = parse_integer<uint64_t>(where, key, value);
   } else {
     throw Error(ErrorCode::kUsage, where, "unknown parameter \"" + std::string(key) + '"', suggestion(key, kKeys));
@@ -114,9 +126,10 @@ ProceduralOptions parse_procedural(const std::string& text) {
   options.kind = kind_name;
   const Kind& kind = find_kind(options.kind);
   std::string_view rest = question == std::string_view::npos ? std::string_view{} : whole.substr(question + 1);
+  Given given;
   while (!rest.empty()) {
     const size_t ampersand = rest.find('&');
-    parse_parameter(text, rest.substr(0, ampersand), options);
+    parse_parameter(text, rest.substr(0, ampersand), given, options);
     rest = ampersand == std::string_view::npos ? std::string_view{} : rest.substr(ampersand + 1);
   }
   check_range(options, kind);

@@ -78,6 +78,14 @@ std::optional<float> parse_float(std::string_view text) {
   return value;
 }
 
+bool is_beyond_float(std::string_view text) {
+  if (parse_float(text)) return false;
+  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
+  float value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc::result_out_of_range && end == text.data() + text.size();
+}
+
 void append_float(std::string& text, float value) {
   char buffer[32];
   text.append(buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr);

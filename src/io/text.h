@@ -14,6 +14,9 @@ std::string read_whole_file(const std::string& path);
 /// The float nearest to a decimal number, "inf" or "nan"; nothing if the text is anything else, or too large.
 std::optional<float> parse_float(std::string_view text);
 
+/// A decimal number that is too large for parse_float.
+bool is_beyond_float(std::string_view text);
+
 /// The shortest text that parse_float turns back into the same float.
 void append_float(std::string& text, float value);
 

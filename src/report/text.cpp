@@ -8,6 +8,8 @@
 
 #include "raygrain/report.h"
 
+#include "base/quantity_text.h"
+
 namespace raygrain {
 
 namespace {
@@ -112,12 +114,6 @@ void append_line(std::string& text, std::span<const Column> columns, const CellO
   }
   line.erase(line.find_last_not_of(' ') + 1);
   text += line + "\n";
-}
-
-std::string bytes_text(double bytes) {
-  if (bytes < 1024) return fmt::format("{:.0f} B", bytes);
-  if (bytes < 1024 * 1024) return fmt::format("{:.1f} KiB", bytes / 1024);
-  return fmt::format("{:.1f} MiB", bytes / (1024 * 1024));
 }
 
 }  // namespace

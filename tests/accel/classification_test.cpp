@@ -118,6 +118,30 @@ TEST(Classification, AGivenFrameIsTaken) {
             Accelerator(mesh, {sun}, options_of(LocalSpace::kWorld, false)).wide_memory_bytes());
 }
 
+/// The number behind `label` in the line that begins with `kind`.
+double predicted(const std::string& routes, const std::string& kind, const std::string& label) {
+  const size_t line = routes.find(kind + ": "), at = routes.find(label + " ", line);
+  EXPECT_TRUE(line != std::string::npos && at < routes.find('\n', line)) << kind << ", " << label << "\n" << routes;
+  return at == std::string::npos ? -1 : std::stod(routes.substr(at + label.size() + 1));
+}
+
+// Of arrays coverage is asked about in batches, at a share of what it costs alone: that is what is compared.
+TEST(Classification, PredictsOfArraysWhatTheChoiceCompares) {
+  const TriangleMesh mesh = test::mesh_families(2).front().mesh;
+  const InfluenceArea sun = directional_light_area("sun", {0.5f, -0.7f, 0.5f}, mesh_bounds(mesh));
+  AcceleratorOptions options;
+  options.space = LocalSpace::kNone;
+  const std::string routes = Accelerator(mesh, {sun}, options).explain({}, 10).areas[0].routes;
+  for (const std::string kind : {"any hit", "closest hit"}) {
+    const double alone = predicted(routes, kind, "along it: coverage");
+    const double batch = predicted(routes, kind + " in arrays", "along it: coverage in batches");
+    EXPECT_NEAR(batch, 0.4 * alone, 0.71) << routes;  // both are rounded
+    const double global = predicted(routes, kind + " in arrays", ", global");
+    const bool is_chosen = routes.find(kind + " in arrays: along it coverage") != std::string::npos;
+    EXPECT_TRUE(is_chosen ? batch <= global + 1 : batch >= global - 1) << routes;
+  }
+}
+
 /// Equal builds choose alike, say so, and keep what they use.
 TEST(Classification, RoutesAreChosenByCountedCost) {
   const TriangleMesh mesh = test::mesh_families(2).front().mesh;

@@ -21,6 +21,11 @@ TEST(NearestName, IsSilentWhenNothingIsNear) {
   EXPECT_EQ(nearest_name("", kNames), "");
   EXPECT_EQ(nearest_name(std::string(1000, 'A'), kNames), "");
   EXPECT_EQ(nearest_name("ALL", {}), "");
+  constexpr std::array<std::string_view, 2> kOptions{"out", "camera"};
+  EXPECT_EQ(nearest_name("bogus", kOptions), "");       // three of five letters
+  EXPECT_EQ(nearest_name("ou", kOptions), "out");       // one of three
+  EXPECT_EQ(nearest_name("cmra", kOptions), "camera");  // two of six
+  EXPECT_EQ(nearest_name("comrad", kOptions), "");      // three of six
 }
 
 TEST(NearestName, SuggestsOrLists) {

@@ -104,6 +104,31 @@ TEST_F(TraceOfASun, RoutesAsItIsTold) {
   EXPECT_EQ(local({"--no-coverage", "--routing", "cheapest"}), 0);  // four triangles need no trees of their own
 }
 
+TEST(TraceCommand, SaysWhereCoverageLeftTreesNoRay) {
+  const TemporaryFolder folder;
+  const auto text_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"trace", "procedural:city?size=3", "--set", "sun",
+                                       "-o",    folder.file("hits.csv")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult result = run_program(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    EXPECT_NE(result.output.find(" triangles, 1 area\n"), std::string::npos) << result.output;
+    return result.output;
+  };
+  const auto is_noted = [&](const std::vector<std::string>& more, const std::string& space) {
+    return text_of(more).find("No ray reached a tree in " + space +
+                              " space: coverage answered 10000 of 10000 rays. Add "
+                              "--no-coverage") != std::string::npos;
+  };
+  EXPECT_TRUE(is_noted({"--space", "ray"}, "ray"));
+  EXPECT_TRUE(is_noted({"--space", "world"}, "world"));
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{}, {"--space", "ray", "--no-coverage"}, {"--space", "ray", "--quiet"}})
+    EXPECT_EQ(text_of(more).find("No ray reached"), std::string::npos);
+  EXPECT_NE(text_of({"--verify"}).find("\nsearches by way (a ray may take several), checked by brute force\nquestion "),
+            std::string::npos);
+}
+
 TEST(TraceOptions, ThatWouldBeIgnoredAreRefused) {
   const std::vector<std::string> trace{"trace", "SCENE", "--rays", "RAYS", "-o", "OUT"};
   const auto refused = [&](std::vector<std::string> more, const std::string& expected) {

@@ -61,12 +61,39 @@ TEST_F(TreeFiles, AreAnalyzedAndSearchedInPlaceOfNewTrees) {
       {"analyze", file("old.obj"), "--recipe", "SAH+ALL", "--whole", "--tree", file("tree.rgt"), "--json", "-"});
   ASSERT_EQ(analyzed.exit_code, 0) << analyzed.errors;
   EXPECT_GT(Json::parse(analyzed.output).at("rows").at(0).at("estimated_cost"), 1);
+  for (const char* fact : {"orientations_per_node", "fallback_share", "build_seconds"})
+    EXPECT_TRUE(Json::parse(analyzed.output).at("rows").at(0).at(fact).is_null()) << fact;
   for (const char* quality : {"fast", "balanced", "best"}) {
     ASSERT_EQ(build("tree.rgt", quality).exit_code, 0);
     const RunResult traced = trace("old.obj", "tree.rgt", std::string(quality) + ".csv");
     EXPECT_EQ(traced.exit_code, 0) << traced.errors;
     EXPECT_EQ(read_file(file(std::string(quality) + ".csv")), read_file(file("fast.csv")));
   }
+}
+
+/// What only the builder of a tree knew is left out, not 0.
+TEST_F(TreeFiles, AreAnalyzedWithoutWhatTheBuilderKnew) {
+  const auto text_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"analyze", file("old.obj"), "--recipe", "SAH+LSPH", "--whole"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const RunResult result = run_program(arguments);
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    return result.output;
+  };
+  const auto lacks = [](const std::string& text, const std::string& part) {
+    return text.find(part) == std::string::npos;
+  };
+  const std::string loaded = text_of({"--tree", file("tree.rgt"), "--nodes", file("loaded.csv")});
+  EXPECT_FALSE(lacks(loaded, ", " + file("tree.rgt") + ", priced as SAH+LSPH\n")) << loaded;
+  EXPECT_FALSE(lacks(loaded, "  estimated_cost ")) << loaded;
+  for (const char* part : {"orientations_per_node", "fallback_share", "_seconds"}) EXPECT_TRUE(lacks(loaded, part));
+  EXPECT_TRUE(read_file(file("loaded.csv")).ends_with(",,,,,,,\r\n")) << read_file(file("loaded.csv")).substr(0, 400);
+  const std::string reinserted = text_of({"--reinsert"}), built = text_of({});
+  for (const char* part : {"orientations_per_node", "fallback_share"}) {
+    EXPECT_FALSE(lacks(built, part)) << part;
+    EXPECT_TRUE(lacks(reinserted, part)) << part;
+  }
+  EXPECT_FALSE(lacks(reinserted, "build_seconds"));
 }
 
 TEST_F(TreeFiles, FitMovedVertices) {

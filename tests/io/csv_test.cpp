@@ -92,8 +92,9 @@ TEST(Csv, ErrorsNameThePlace) {
                          {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6,7\n", ":2:13", "more fields"},
                          {"ox,oy,oz,dx,dy,dz\n1,2,3,4,,6\n", ":2:9", "an empty field is not a number"},
                          {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6 7\n", ":2:11", "not a number"},
-                         {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,1e39\n", ":2:11", "not a number"},
-                         {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,1e9999\n", ":2:11", "not a number"},
+                         {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,1e39\n", ":2:11", "\"1e39\" is beyond float32 (3.4e38)"},
+                         {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,1e9999\n", ":2:11", "\"1e9999\" is beyond float32 (3.4e38)"},
+                         {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,1e99x\n", ":2:11", "not a number"},
                          {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,+-6\n", ":2:11", "not a number"},
                          {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,0x10\n", ":2:11", "not a number"},
                          {"ox;oy;oz;dx;dy;dz\n", ":1:1", "unknown column"}}) {

@@ -169,6 +169,8 @@ TEST(ParseProcedural, RefusesWithAHint) {
       {"procedural:city?seed=1.5", "\"1.5\""},
       {"procedural:random100?seed=4294967296", "seed 4294967296 is too large"},
       {"procedural:city?&size=3", "unknown parameter"},
+      {"procedural:city?size=3&size=4", "size is there twice"},
+      {"procedural:city?seed=1&size=4&seed=1", "seed is there twice"},
   };
   for (const auto& [text, fragment] : table) {
     SCOPED_TRACE(text);
