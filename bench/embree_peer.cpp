@@ -45,6 +45,11 @@ RTCRay to_embree(const Ray& ray) {
   return r;
 }
 
+Hit to_hit(const RTCRayHit& query) {
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  return {query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID};
+}
+
 template <class Packet>
 void fill(Packet& packet, size_t lane, const Ray& ray) {
   packet.org_x[lane] = ray.origin.x, packet.org_y[lane] = ray.origin.y, packet.org_z[lane] = ray.origin.z;
@@ -60,8 +65,7 @@ void intersect_singly(RTCScene scene, const PeerMode& mode, std::span<const Ray>
     query.ray = to_embree(rays[i]);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     rtcIntersect1(scene, &context, &query);
-    const bool is_hit = query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
-    hits[i] = is_hit ? Hit{query.ray.tfar, query.hit.u, query.hit.v, query.hit.primID} : Hit{};
+    hits[i] = to_hit(query);
   }
 }
 
@@ -105,6 +109,31 @@ void occluded_packets(const Call& call, std::span<const Ray> rays, uint8_t* flag
     }
     call(valid, &packet);
     for (size_t i = 0; i < count; ++i) flags[begin + i] = packet.tfar[i] < 0;
+  }
+}
+
+void intersect_streams(RTCScene scene, const PeerMode& mode, std::span<const Ray> rays, Hit* hits) {
+  RTCIntersectContext context = context_of(mode);
+  std::array<RTCRayHit, kStream> queries;
+  for (size_t begin = 0; begin < rays.size(); begin += kStream) {
+    const size_t count = std::min<size_t>(kStream, rays.size() - begin);
+    for (size_t i = 0; i < count; ++i) {
+      queries[i].ray = to_embree(rays[begin + i]);
+      queries[i].hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    }
+    rtcIntersect1M(scene, &context, queries.data(), static_cast<unsigned>(count), sizeof(RTCRayHit));
+    for (size_t i = 0; i < count; ++i) hits[begin + i] = to_hit(queries[i]);
+  }
+}
+
+void occluded_streams(RTCScene scene, const PeerMode& mode, std::span<const Ray> rays, uint8_t* flags) {
+  RTCIntersectContext context = context_of(mode);
+  std::array<RTCRay, kStream> queries;
+  for (size_t begin = 0; begin < rays.size(); begin += kStream) {
+    const size_t count = std::min<size_t>(kStream, rays.size() - begin);
+    for (size_t i = 0; i < count; ++i) queries[i] = to_embree(rays[begin + i]);
+    rtcOccluded1M(scene, &context, queries.data(), static_cast<unsigned>(count), sizeof(RTCRay));
+    for (size_t i = 0; i < count; ++i) flags[begin + i] = queries[i].tfar < 0;
   }
 }
 
@@ -173,6 +202,8 @@ void trace_closest(RTCScene scene, const PeerMode& mode, const Part& part, size_
   RTCIntersectContext context = context_of(mode);
   if (mode.packet == 1)
     intersect_singly(scene, mode, rays, hits);
+  else if (mode.packet == kStream)
+    intersect_streams(scene, mode, rays, hits);
   else if (mode.packet == 8)
     intersect_packets<8, RTCRayHit8>(
         [&](const int* valid, RTCRayHit8* packet) { rtcIntersect8(valid, scene, &context, packet); }, rays, hits);
@@ -188,6 +219,8 @@ void trace_any(RTCScene scene, const PeerMode& mode, const Part& part, size_t be
   RTCIntersectContext context = context_of(mode);
   if (mode.packet == 1)
     occluded_singly(scene, mode, rays, flags);
+  else if (mode.packet == kStream)
+    occluded_streams(scene, mode, rays, flags);
   else if (mode.packet == 8)
     occluded_packets<8, RTCRay8>(
         [&](const int* valid, RTCRay8* packet) { rtcOccluded8(valid, scene, &context, packet); }, rays, flags);
@@ -223,7 +256,7 @@ std::vector<PeerMode> Peer::modes() {
   for (const PeerQuality quality : {PeerQuality::kMedium, PeerQuality::kHigh})
     for (const bool robust : {false, true})
       for (const bool coherent : {false, true})
-        for (const unsigned packet : {1u, 8u, 16u}) modes.push_back({quality, robust, coherent, packet});
+        for (const unsigned packet : {1u, 8u, 16u, kStream}) modes.push_back({quality, robust, coherent, packet});
   return modes;
 }
 

@@ -9,8 +9,8 @@ const char* name(PeerQuality quality) {
 }
 
 std::string PeerMode::name() const {
-  return std::string(bench::name(quality)) + (robust ? " robust " : " ") + std::to_string(packet) +
-         (coherent ? " coherent" : " incoherent");
+  return std::string(bench::name(quality)) + (robust ? " robust " : " ") +
+         (packet == kStream ? "stream" : std::to_string(packet)) + (coherent ? " coherent" : " incoherent");
 }
 
 std::vector<PeerMode> Peer::best_modes(const BenchRays& set, unsigned threads) const {

@@ -15,11 +15,14 @@ namespace raygrain::bench {
 enum class PeerQuality { kLow, kMedium, kHigh };
 const char* name(PeerQuality quality);
 
+/// Rays in one call of Embree's interface for streams (rtcIntersect1M).
+inline constexpr unsigned kStream = 256;
+
 /// How rays are handed to Embree.
 struct PeerMode {
   PeerQuality quality = PeerQuality::kMedium;
   bool robust = false, coherent = false;
-  unsigned packet = 1;  // 1, 8 or 16 rays a call
+  unsigned packet = 1;  // 1, 8, 16 or kStream rays a call
 
   std::string name() const;
 };
@@ -42,8 +45,8 @@ class Peer {
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
 
-  /// Every mode: both qualities, robust on and off, single rays and packets, coherent and incoherent. Empty where there
-  /// is no Embree.
+  /// Every mode: both qualities, robust on and off, single rays, packets and streams, coherent and incoherent. Empty
+  /// where there is no Embree.
   static std::vector<PeerMode> modes();
 
   void trace(const PeerMode& mode, bool any, const Part& part, unsigned threads) const;
