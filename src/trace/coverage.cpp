@@ -1,7 +1,6 @@
 #include "raygrain/coverage.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -11,6 +10,7 @@
 #include "base/sizes.h"
 #include "base/timer.h"
 #include "trace/coverage_columns.h"
+#include "trace/coverage_divide.h"
 #include "trace/coverage_grid.h"
 #include "trace/kernels/coverage_kernels.h"
 #include "trace/kernels/kernels.h"
@@ -35,7 +35,6 @@ constexpr size_t kRaysPerTile = 4;
 /// ... and the grid does not fit the caches anyway.
 constexpr size_t kSmallGrid = size_t{1} << 20;
 constexpr size_t kMostRaysPerTask = size_t{1} << 17;  // so many fit a cache with their answers
-constexpr size_t kPointsPerTask = size_t{1} << 16;
 constexpr size_t kLeastRaysPerTask = 4096;
 
 size_t bytes_of(const CoverageGrid& grid) {
@@ -260,23 +259,7 @@ std::vector<std::vector<uint32_t>> Coverage::divide(std::span<const Coverage* co
   std::vector<const CoverageGrid*> grids;
   for (const Coverage* coverage : coverages) grids.push_back(&coverage->data_->grid);
   const EyeGrids eye{grids.data(), static_cast<uint32_t>(grids.size())};
-  const CoverageKernels& table = *coverages[0]->data_->kernels;
-  std::vector<uint8_t> chosen(points.size());
-  parallel_for(points.size(), kPointsPerTask, threads, [&](size_t begin, size_t end) {
-    table.choose(eye, are_directions, points.data() + begin, end - begin, chosen.data() + begin);
-  });
-  std::array<size_t, 256> counts{};
-  for (const uint8_t c : chosen) ++counts[c];
-  std::array<uint32_t*, 256> next{};
-  std::vector<std::vector<uint32_t>> lists(coverages.size());
-  for (size_t i = 0; i < lists.size(); ++i) {
-    lists[i].resize(counts[i]);
-    next[i] = lists[i].data();
-  }
-  rest.resize(rest.size() + counts[kNoGrid]);
-  next[kNoGrid] = rest.data() + rest.size() - counts[kNoGrid];
-  for (size_t i = 0; i < chosen.size(); ++i) *next[chosen[i]]++ = static_cast<uint32_t>(i);
-  return lists;
+  return divide_points(eye, *coverages[0]->data_->kernels, points, are_directions, rest, threads);
 }
 
 size_t Coverage::cell_count() const {
