@@ -116,7 +116,7 @@ std::string times_table(const Explanation& explanation) {
     for (const AreaTimes& times : area.times) lines.push_back({&area, &times});
   }
   std::ranges::stable_sort(lines, {}, [](const Line& line) { return line.times->break_even_rays; });
-  std::string text = fmt::format("{:<{}}  {:<24} {:>11} {:>9} {:>9} {:>9} {:>9}\n", "area", width, "question",
+  std::string text = fmt::format("{:<{}}  {:<24} {:>13} {:>9} {:>9} {:>9} {:>9}\n", "area", width, "question",
                                  "pays after", "ns a ray", "global", "coverage", "its tree");
   for (const Line& line : lines) {
     const AreaTimes& times = *line.times;
@@ -125,14 +125,15 @@ std::string times_table(const Explanation& explanation) {
     };
     const double pays = times.break_even_rays;
     text +=
-        fmt::format("{:<{}}  {:<24} {:>11} {:>9.1f} {:>9.1f} {:>9} {:>9}\n", line.area->name, width,
+        fmt::format("{:<{}}  {:<24} {:>13} {:>9.1f} {:>9.1f} {:>9} {:>9}\n", line.area->name, width,
                     name(times.question), std::isinf(pays) ? "never" : rough_count_text(pays), times.area_nanoseconds,
                     times.global_nanoseconds, percent(times.use.covered), percent(times.use.local));
   }
   for (const AreaReport& area : explanation.areas)
     if (const std::string_view missing = missing_times(area); !missing.empty())
       text += fmt::format("{:<{}}  {}\n", area.name, width, missing);
-  return text + "\"pays after\" is rough: builds are timed once\n";
+  const bool any_pays = !lines.empty() && std::isfinite(lines.front().times->break_even_rays);
+  return text + (any_pays ? "\"pays after\" is rough: builds are timed once\n" : "");
 }
 
 std::string explanation_text(const Options& options, const Scene& scene, Explanation explanation) {

@@ -107,7 +107,7 @@ std::string trace_text(const Traced& traced, const Scene& scene, size_t areas) {
 
 std::string unused_trees_note(const Traced& traced, const std::string& space) {
   const AcceleratorCounters& c = traced.answers.counters;
-  if (space.empty() || c.local_searches > 0 || c.covered == 0) return "";
+  if (space.empty() || space == "none" || c.local_searches > 0 || c.covered == 0) return "";
   return fmt::format(
       "No ray reached a tree in {} space: coverage answered {} of {} rays. Add --no-coverage to have the trees "
       "asked.\n",

@@ -24,9 +24,9 @@ std::string_view without_spaces(std::string_view text) {
 /// Throws where the text is a number, but larger than any float.
 std::optional<float> finite_number(const std::string& option, std::string_view text) {
   text = without_spaces(text);
-  if (is_beyond_float(text))
-    fail_usage(option, fmt::format("'{}' is beyond float32 (3.4e38)", text), "Give smaller numbers");
   const std::optional<float> value = parse_float(text);
+  if (!value && is_beyond_float(text))
+    fail_usage(option, fmt::format("'{}' is beyond float32 (3.4e38)", text), "Give numbers between -3.4e38 and 3.4e38");
   return value && std::isfinite(*value) ? value : std::nullopt;
 }
 

@@ -143,7 +143,8 @@ Ray nearly_along_axis(Aim& aim) {
   if (aim.random.below(3) == 0) origin[(axis + 1) % 3] = place[(axis + 1) % 3];
   Ray ray{clamped_to_float(origin), clamped_to_float(target - origin)};
   const double size = std::abs(static_cast<double>(ray.direction[axis]));
-  const double small = aim.signed_uniform() * std::ldexp(size, -static_cast<int>(aim.random.below(90)));
+  const double share = aim.signed_uniform();
+  const double small = share * std::ldexp(size, -static_cast<int>(aim.random.below(90)));
   ray.direction[(axis + 2) % 3] = clamped_to_float({small, 0, 0}).x;
   return ray;
 }

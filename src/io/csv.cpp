@@ -83,9 +83,10 @@ Ray parse_ray(const Line& line, const std::vector<size_t>& columns, const std::s
       throw Error(ErrorCode::kMalformed, place(path, line.number, column),
                   "more fields than the header's " + std::to_string(columns.size()));
     const std::optional<float> value = parse_float(field);
-    if (is_beyond_float(field))
+    if (!value && is_beyond_float(field))
       throw Error(ErrorCode::kMalformed, place(path, line.number, column),
-                  in_quotes(field) + " is beyond float32 (3.4e38)", "give a smaller number, or inf");
+                  in_quotes(field) + " is beyond float32 (3.4e38)",
+                  "give a number between -3.4e38 and 3.4e38, or inf for tmin and tmax");
     if (!value)
       throw Error(ErrorCode::kMalformed, place(path, line.number, column),
                   (field.empty() ? "an empty field" : in_quotes(field)) + " is not a number",

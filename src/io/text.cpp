@@ -15,12 +15,28 @@ namespace raygrain {
 
 namespace {
 
+/// Of a number: is it below one? Where its first digit but 0 stands, and the exponent, say so.
+bool is_small(std::string_view text) {
+  const size_t end = std::min(text.find_first_of("eE"), text.size());
+  const std::string_view digits = text.substr(0, end);
+  const size_t point = std::min(digits.find('.'), digits.size()), first = digits.find_first_of("123456789");
+  if (first == std::string_view::npos) return true;
+  const auto place = static_cast<int64_t>(point) - static_cast<int64_t>(first) - (first < point ? 1 : 0);
+  std::string_view exponent = text.substr(std::min(end + 1, text.size()));
+  const bool is_negative = exponent.starts_with('-');
+  if (exponent.starts_with('+') || is_negative) exponent.remove_prefix(1);
+  int64_t power = 0;
+  if (std::from_chars(exponent.data(), exponent.data() + exponent.size(), power).ec == std::errc::result_out_of_range)
+    return is_negative;
+  power = std::min(power, int64_t{1} << 60);
+  return place + (is_negative ? -power : power) < 0;
+}
+
 /// What is beyond float: too small is zero, too large is no number. Overflow and underflow look alike to from_chars.
 std::optional<float> parse_extreme(std::string_view text) {
   double value = 0;
   if (std::from_chars(text.data(), text.data() + text.size(), value).ec == std::errc::result_out_of_range) {
-    const size_t exponent = text.find_first_of("eE");
-    if (exponent == std::string_view::npos || !text.substr(exponent + 1).starts_with('-')) return std::nullopt;
+    if (!is_small(text)) return std::nullopt;
     value = text.front() == '-' ? -0.0 : 0.0;
   }
   const float narrowed = static_cast<float>(value);

@@ -19,7 +19,8 @@ void for_tasks(size_t points, unsigned threads, const Body& body) {
                [&](size_t begin, size_t end) { body(begin / kPointsPerTask, begin, end); });
 }
 
-/// Calls body(grid), of those that there are, and of none: small batches do not wait for all numbers that a byte has.
+/// Calls body(grid), of those that there are, and of none: small batches do not wait for sums of all that a byte can
+/// name.
 template <class Body>
 void for_grids(const EyeGrids& eye, const Body& body) {
   for (size_t grid = 0; grid < eye.count; ++grid) body(grid);

@@ -122,8 +122,10 @@ TEST(TraceCommand, SaysWhereCoverageLeftTreesNoRay) {
   };
   EXPECT_TRUE(is_noted({"--space", "ray"}, "ray"));
   EXPECT_TRUE(is_noted({"--space", "world"}, "world"));
-  for (const std::vector<std::string>& more :
-       {std::vector<std::string>{}, {"--space", "ray", "--no-coverage"}, {"--space", "ray", "--quiet"}})
+  for (const std::vector<std::string>& more : {std::vector<std::string>{},
+                                               {"--space", "none"},
+                                               {"--space", "ray", "--no-coverage"},
+                                               {"--space", "ray", "--quiet"}})
     EXPECT_EQ(text_of(more).find("No ray reached"), std::string::npos);
   EXPECT_NE(text_of({"--verify"}).find("\nsearches by way (a ray may take several), checked by brute force\nquestion "),
             std::string::npos);

@@ -73,6 +73,17 @@ TEST(Csv, NumbersBeyondFloat) {
   EXPECT_TRUE(same_value(rays[0].origin.z, 1e-40f));
   EXPECT_TRUE(std::isnan(rays[0].direction.x));
   EXPECT_EQ(rays[0].direction.y, -kInf);
+  const std::string zeros(400, '0');
+  const std::vector<Ray> long_ones =
+      load_text("ox,oy,oz,dx,dy,dz\n0." + zeros + "1,-0." + zeros + "1,0." + zeros + "1e401,1" + zeros + "e-400,1" +
+                zeros + "e-999,1e-9999999999999999999\n");
+  ASSERT_EQ(long_ones.size(), 1u);
+  EXPECT_TRUE(same_value(long_ones[0].origin.x, 0.0f));
+  EXPECT_TRUE(same_value(long_ones[0].origin.y, -0.0f));
+  EXPECT_EQ(long_ones[0].origin.z, 1.0f);
+  EXPECT_EQ(long_ones[0].direction.x, 1.0f);
+  EXPECT_TRUE(same_value(long_ones[0].direction.y, 0.0f));
+  EXPECT_TRUE(same_value(long_ones[0].direction.z, 0.0f));
 }
 
 TEST(Csv, ErrorsNameThePlace) {
@@ -94,6 +105,7 @@ TEST(Csv, ErrorsNameThePlace) {
                          {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6 7\n", ":2:11", "not a number"},
                          {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,1e39\n", ":2:11", "\"1e39\" is beyond float32 (3.4e38)"},
                          {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,1e9999\n", ":2:11", "\"1e9999\" is beyond float32 (3.4e38)"},
+                         {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,0.001e9999999999999999999\n", ":2:11", "is beyond float32"},
                          {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,1e99x\n", ":2:11", "not a number"},
                          {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,+-6\n", ":2:11", "not a number"},
                          {"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,0x10\n", ":2:11", "not a number"},

@@ -1,6 +1,7 @@
 // One number for many bytes, to tell whether they are still what they were.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <ranges>
 #include <type_traits>

@@ -45,6 +45,7 @@ std::vector<size_t> owners(const Divided& divided, size_t points) {
   };
   for (size_t i = 0; i < none; ++i) take(divided.lists[i], i);
   take(std::span(divided.rest).subspan(1), none);
+  EXPECT_EQ(std::ranges::count(owner, none + 1), 0);
   return owner;
 }
 
@@ -68,10 +69,24 @@ TEST(CoverageDivide, EveryPointIsOnceInTheListThatItHasAlone) {
       const std::vector<size_t> owner = owners(divided, points.size());
       for (const std::vector<uint32_t>& list : divided.lists) EXPECT_GT(list.size(), 500u);
       EXPECT_GT(divided.rest.size(), 500u);
+      for (const size_t i : {0u, 1u, 16'383u, 16'384u, 32'767u, 32'768u, 49'152u, 50'002u})
+        EXPECT_EQ(owners(divide(coverages, {points[i]}, are_directions, 1), 1)[0], owner[i]) << i;
       for (size_t i = 0; i < points.size(); i += 97)
         EXPECT_EQ(owners(divide(coverages, {points[i]}, are_directions, 1), 1)[0], owner[i]) << i;
     }
   }
+}
+
+TEST(CoverageDivide, AnyNumberOfPointsAmongAnyNumberOfCoverages) {
+  const auto mesh = std::make_shared<const TriangleMesh>(triangle_soup(50, 1));
+  const Vec3 eye{50.1f, 49.8f, 50.3f};
+  std::vector<Coverage> coverages = Coverage::of_areas(mesh, point_light_areas("lamp", eye, mesh_bounds(*mesh)));
+  for (; !coverages.empty(); coverages.pop_back())
+    for (const size_t count : {0u, 1u, 16'384u, 16'385u}) {
+      const std::vector<Vec3> points(count, {90, 50, 50});
+      const std::vector<size_t> owner = owners(divide(coverages, points, false, 2), count);
+      EXPECT_EQ(std::ranges::count(owner, owner.empty() ? 0 : owner[0]), static_cast<std::ptrdiff_t>(count));
+    }
 }
 
 }  // namespace

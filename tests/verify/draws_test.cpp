@@ -19,7 +19,7 @@ std::string without_isa(std::string name) {
   return name;
 }
 
-// As before there were newer words and measures.
+// What these seeds drew before newer words and measures came.
 TEST(Draws, OfStructures) {
   EXPECT_EQ(without_isa(random_structure(0).name),
             "accelerator tree=RANDOM+LSPH@spatial local=DIR+ROBIN@binned octree=0 covered=0 cells=64 tile=4 "
