@@ -15,6 +15,16 @@ namespace raygrain {
 
 namespace {
 
+/// As from_chars, of all of the text; takes a plus away from before it.
+std::errc read_whole(std::string_view& text, float& value) {
+  if (text.starts_with('+')) {
+    text.remove_prefix(1);
+    if (text.starts_with('-')) return std::errc::invalid_argument;
+  }
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return end == text.data() + text.size() ? error : std::errc::invalid_argument;
+}
+
 /// Of a number: is it below one? Where its first digit but 0 stands, and the exponent, say so.
 bool is_small(std::string_view text) {
   const size_t end = std::min(text.find_first_of("eE"), text.size());
@@ -83,23 +93,16 @@ std::string read_whole_file(const std::string& path) {
 }
 
 std::optional<float> parse_float(std::string_view text) {
-  if (text.starts_with('+')) {
-    text.remove_prefix(1);
-    if (text.starts_with('-')) return std::nullopt;
-  }
   float value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc::invalid_argument || end != text.data() + text.size()) return std::nullopt;
+  const std::errc error = read_whole(text, value);
   if (error == std::errc::result_out_of_range) return parse_extreme(text);
+  if (error != std::errc{}) return std::nullopt;
   return value;
 }
 
 bool is_beyond_float(std::string_view text) {
-  if (parse_float(text)) return false;
-  if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1);
   float value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc::result_out_of_range && end == text.data() + text.size();
+  return read_whole(text, value) == std::errc::result_out_of_range && !parse_extreme(text);
 }
 
 void append_float(std::string& text, float value) {

@@ -1,6 +1,5 @@
 #include "trace/coverage_divide.h"
 
-#include <algorithm>
 #include <array>
 
 #include "base/parallel.h"
